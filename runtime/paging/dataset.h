@@ -1,0 +1,93 @@
+// Dataset: the pages on disk, one LMDB store in a folder, read by many threads at once. docs/dataset-format.md has the
+// bytes.
+//
+// A layer is a pyramid of pages of one kind. The children of a quadnode exist all four or not at all; level 0 of every
+// layer has all 32 pages. Which pages exist is loaded at Open, so Exists touches no disk.
+//
+// A dataset is opened for reading alone (no lock file, no write permission needed) and is never changed in place: a
+// build makes a new store and moves it over the old one, which an open Dataset goes on reading.
+//
+// Threads: all const methods, any thread; a read copies nothing but the decoded page.
+// Owns: the memory map, until destruction.
+#pragma once
+
+#include "runtime/base/status.h"
+#include "runtime/paging/page.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace belvedere {
+
+inline constexpr int kDatasetVersion = 1;
+inline constexpr int kMaxDatasetLayers = 256;
+
+enum class LayerKind : uint8_t { kElevation = 1, kImagery = 2 };
+std::string_view LayerKindName(LayerKind kind);  // "elevation", "imagery"
+
+// What a layer was made of, as recorded when it was built.
+struct SourceRecord {
+  std::string path;  // as the spec wrote it
+  std::string crs;   // short name, such as "EPSG:4326"
+  GeoBox extent;
+  std::optional<double> nodata;
+  std::string datum;  // elevation: "egm96", "ellipsoid" or an offset in metres; imagery: empty
+  int finest_level = 0;
+};
+
+struct LayerRecord {
+  std::string name;
+  LayerKind kind = LayerKind::kElevation;
+  int max_level = 0;
+  std::vector<int64_t> pages_per_level;  // max_level + 1 counts
+  int64_t pages = 0;
+  int64_t bytes = 0;               // stored bytes of all its pages
+  std::string vertical_reference;  // elevation: "WGS 84 ellipsoid", and the geoid that the sources were lifted by
+  std::vector<SourceRecord> sources;
+};
+
+class Dataset {
+ public:
+  // path: the dataset's folder. Fails with one line when it is missing, damaged, or of another version.
+  static Result<std::unique_ptr<Dataset>> Open(const std::string& path);
+  virtual ~Dataset() = default;
+
+  // Layer numbers, as below, are indices into layers().
+  virtual const std::string& path() const = 0;
+  virtual const std::vector<LayerRecord>& layers() const = 0;
+  virtual const std::string& build_time() const = 0;  // ISO 8601, UTC
+  virtual int64_t bytes() const = 0;                  // size of the store
+  std::optional<int> FindLayer(std::string_view name) const;
+  std::optional<int> FindLayer(LayerKind kind) const;  // the first of that kind
+
+  virtual bool Exists(int layer, Quadcode node) const = 0;
+  // Quadcode words of the layer's pages, ascending.
+  virtual std::span<const uint64_t> Nodes(int layer) const = 0;
+  // Whether the page is there and its children too (which exist together).
+  bool HasChildren(int layer, Quadcode node) const {
+    return node.level() < kMaxLevel && Exists(layer, node.Child(0));
+  }
+  int MaxLevel(int layer) const { return layers()[static_cast<size_t>(layer)].max_level; }
+  // Finest existing page that contains the position; its level is at most max_level.
+  Quadcode FinestContaining(int layer, double latitude_deg, double longitude_deg, int max_level = kMaxLevel) const;
+
+  // REQUIRES: the layer's kind is the one asked for. A page that is missing or damaged is a Status that names the
+  // dataset, layer, quadcode and reason.
+  virtual Result<std::shared_ptr<ElevationPage>> ReadElevation(int layer, Quadcode node) const = 0;
+  // Level 0 of the texels is filled; there is room for the other kImageMipLevels - 1, zeroed. Always kRGBA8.
+  virtual Result<std::shared_ptr<ImagePage>> ReadImage(int layer, Quadcode node) const = 0;
+
+  // Stored bytes of a page, as ReadElevation decodes them; nullopt when it is not there.
+  virtual std::optional<std::vector<uint8_t>> ReadRaw(int layer, Quadcode node) const = 0;
+};
+
+// Height in metres of a page at a position inside its quadnode, bilinear between posts.
+double BilinearHeight(const ElevationPage& page, Quadcode node, double latitude_deg, double longitude_deg);
+
+}  // namespace belvedere

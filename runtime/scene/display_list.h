@@ -1,0 +1,133 @@
+// DisplayList: all that the render thread needs to draw one manager's part of one view, as plain records.
+//
+// A manager builds a list, publishes it through its triple buffer and does not touch it again until the buffer hands the
+// memory back. The render thread walks the records in order; a cull-begin whose volume is hidden jumps past its
+// cull-end. Records:
+//
+//   kCullBegin      index -> volumes; skip = record to go on with when hidden (one past the matching kCullEnd)
+//   kCullEnd
+//   kDrawTerrain    index -> terrain_draws
+//   kDrawInstances  index -> instances [index, index + count)
+//
+// Terrain vertices live in GPU slots of kVerticesPerPage each, so that vertex v of the page in slot s has the absolute
+// number s * kVerticesPerPage + v. Indices are absolute: triangles of one quadnode may use vertices of its neighbours'
+// pages, and a vertex that several quadnodes share is the same number in all of them. That is what makes the surface
+// watertight: shared edges are shared numbers. `slots` says, for every slot that the list uses, in which coordinate
+// frame its vertices are and where its posts lie on the grid.
+//
+// Everything that a list names is pinned by it until it is cleared: pages in the cache (page_pins), slots on the GPU
+// (gpu_pins). `uploads` are the pages that the manager would draw if they were on the GPU, most wanted first.
+//
+// Frames: volumes and instances in ECEF, metres, double; times in clock seconds.
+// Threads: built by one manager, read by the render thread.
+#pragma once
+
+#include "runtime/base/view_id.h"
+#include "runtime/earth/frame.h"
+#include "runtime/earth/visibility.h"
+#include "runtime/paging/shared_cache.h"
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace belvedere {
+
+inline constexpr int kMaxImageLayers = 3;  // drawn over each other in one pass
+
+struct ListRecord {
+  enum class Kind : uint8_t { kCullBegin, kCullEnd, kDrawTerrain, kDrawInstances };
+  Kind kind = Kind::kCullEnd;
+  uint32_t index = 0;
+  uint32_t count = 0;
+  uint32_t skip = 0;
+};
+
+// An image page under a quadnode: the page's own or an ancestor's, of which it covers a sub-rectangle.
+// Texture coordinate = offset + scale * (position within the quadnode, 0..1 from its south-west corner).
+struct ImageUse {
+  int32_t slot = -1;  // -1: no image, draw as neutral
+  float offset_u = 0, offset_v = 0;
+  float scale = 1;
+};
+
+struct TerrainSlot {
+  int32_t slot = 0;
+  uint32_t frame = 0;       // index -> frames
+  GridPoint south_west;     // of the page's quadnode
+  uint32_t post_spacing = 0;  // grid units between posts
+};
+
+struct TerrainDraw {
+  Quadcode node;
+  uint32_t first_index = 0;
+  uint32_t index_count = 0;  // 3 a triangle
+  std::array<ImageUse, kMaxImageLayers> images{};
+};
+
+struct ObjectLook {
+  int32_t model_slot = -1;  // GPU slot of the model page; -1: symbol only
+  uint8_t detail = 0;       // level of detail of the model, 0 the finest
+  uint8_t symbol = 0;       // SymbolShape
+  std::array<uint8_t, 4> colour{255, 255, 255, 255};  // force colour of symbol and label
+  float scale = 1;
+};
+
+enum class SymbolShape : uint8_t { kNone, kAir, kGround, kSurface, kSubsurface, kOther };
+
+// One moving object. The render thread moves it on from `time_s` to its own frame's time, as it does the eye.
+struct ObjectInstance {
+  glm::dvec3 position_ecef{};
+  glm::dvec3 velocity_mps{};
+  glm::dmat3 ecef_from_body{1.0};      // columns: body x forward, y right, z down
+  glm::dvec3 angular_velocity_body{};  // radians/s
+  double radius_m = 0;
+  ObjectLook look;
+  uint32_t label = 0;                  // index -> labels, 0 none
+  uint64_t object = 0;                 // ObjectId, for picking and for tests
+};
+
+struct DisplayList {
+  ViewId view = 0;
+  uint64_t view_number = 0;  // ViewParameters::number it was built for
+  uint64_t number = 0;       // grows with every list of that manager
+  double time_s = 0;         // clock time for which instances are given
+
+  std::vector<ListRecord> records;
+  std::vector<BoundingSphere> volumes;
+  std::vector<Frame> frames;
+  std::vector<TerrainSlot> slots;
+  std::vector<uint32_t> indices;
+  std::vector<TerrainDraw> terrain_draws;
+  std::vector<ObjectInstance> instances;
+  std::vector<std::string> labels;  // labels[0] is empty
+
+  std::vector<PagePin> page_pins;
+  std::vector<Residency*> gpu_pins;  // pages of page_pins; unpinned by Clear
+  std::vector<PagePin> uploads;
+
+  struct Statistics {
+    uint32_t triangles = 0;
+    uint32_t nodes = 0;
+    double achieved_error_px = 0;   // largest screen-space error that the list leaves within the view
+    uint32_t pages_waiting = 0;     // pages wished for and not yet drawn
+    bool behind = false;            // some visible quadnode is coarser than the bound asks
+    bool settled = false;           // nothing more will come for these view parameters
+    double height_above_ground_m = 0;  // of the eye, over the finest resident surface under it
+    double build_ms = 0;
+  } statistics;
+
+  // Ready to be filled anew; keeps its memory.
+  void Clear();
+  DisplayList() = default;
+  ~DisplayList() { Clear(); }
+  DisplayList(const DisplayList&) = delete;
+  DisplayList& operator=(const DisplayList&) = delete;
+};
+
+}  // namespace belvedere

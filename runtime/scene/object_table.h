@@ -1,0 +1,204 @@
+// ObjectTable: every moving object that is known now, shared by whoever hears of objects and whoever shows them.
+//
+// Writers put whole records; the table clamps and flags what is nonsense, drops objects not heard of for timeout_s, and
+// at capacity drops the one not heard of for longest. Readers take an ObjectSnapshot: immutable, all records at one
+// time, in the order of their ids. It is rebuilt by writers, at most every publish_interval_s, and less often when
+// building one takes long (never more than a twentieth of the time).
+//
+// Units:   metres, seconds on the user's Clock::NowSeconds, radians.
+// Threads: all methods from any thread. Reading costs a shared_ptr copy and never waits while a snapshot is built.
+// Owns:    about 350 bytes an object, and as much again for each snapshot that somebody holds.
+#pragma once
+
+#include "runtime/base/mutex.h"
+#include "runtime/scene/motion.h"
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace belvedere {
+
+struct EntityId {
+  uint16_t site = 0, application = 0, entity = 0;
+  auto operator<=>(const EntityId&) const = default;
+  std::string ToString() const;  // "site:application:entity"
+  static std::optional<EntityId> Parse(std::string_view text);
+};
+
+// The seven numbers of SISO-REF-010; zero means unspecified.
+struct EntityType {
+  uint8_t kind = 0, domain = 0;
+  uint16_t country = 0;
+  uint8_t category = 0, subcategory = 0, specific = 0, extra = 0;
+  auto operator<=>(const EntityType&) const = default;
+  std::string ToString() const;  // "1.2.225.57.1.1.0"
+
+  static constexpr uint8_t kPlatform = 1, kMunition = 2;                   // kind
+  static constexpr uint8_t kLand = 1, kAir = 2, kSurface = 3, kSpace = 5;  // domain of a platform
+  bool is_ground_platform() const { return kind == kPlatform && domain == kLand; }
+  bool is_air_platform() const { return kind == kPlatform && domain == kAir; }
+};
+
+// Up to 11 characters, all printable ASCII.
+class Marking {
+ public:
+  static constexpr size_t kMaxLength = 11;
+  Marking() = default;
+  // Up to the first NUL; bytes that are not printable ASCII become '?', spaces at the end go.
+  static Marking Sanitise(std::span<const uint8_t> bytes);
+  static Marking Sanitise(std::string_view text);
+  std::string_view view() const { return {text_.data(), length_}; }
+  bool empty() const { return length_ == 0; }
+  bool operator==(const Marking& other) const { return view() == other.view(); }
+
+ private:
+  std::array<char, kMaxLength> text_{};
+  uint8_t length_ = 0;
+};
+
+struct ArticulatedPart {
+  uint16_t attached_to = 0;  // 0: the entity itself
+  uint32_t type = 0;         // part class, a multiple of 32, plus the metric in the low 5 bits
+  float value = 0;
+  uint32_t part_class() const { return type & ~uint32_t{31}; }
+  uint32_t metric() const { return type & 31; }  // 11 azimuth, 13 elevation, ...
+};
+
+// Why a record is not as it was sent.
+enum ObjectFlags : uint8_t {
+  kObjectAtEarthCentre = 1,  // no position was given
+  kObjectUnderground = 2,    // more than 100 km under the ellipsoid
+  kObjectTooFar = 4,         // more than kFarthestObject_m from the Earth's centre
+  kObjectMotionClamped = 8,  // faster than kMaxSpeed_mps and so on
+  kObjectUnknownModel = 16,  // dead-reckoning model not in the standard: stands still
+  kObjectFrozen = 32,        // the sender asks that it not be dead-reckoned
+};
+inline constexpr uint8_t kObjectNotVisible = kObjectAtEarthCentre | kObjectUnderground | kObjectTooFar;
+inline constexpr double kFarthestObject_m = 1e9;
+
+struct ObjectRecord {
+  static constexpr size_t kMaxParts = 8;  // further ones are left out
+
+  EntityId id;
+  EntityType type;
+  uint8_t force = 0;  // 1 friendly, 2 opposing, 3 neutral
+  uint8_t flags = 0;  // ObjectFlags
+  uint8_t part_count = 0;
+  uint32_t appearance = 0;
+  Marking marking;
+  KinematicState kinematics;
+  std::array<ArticulatedPart, kMaxParts> part_array{};
+  double received_s = 0;
+  uint32_t report = 0;  // counts the reports of this object; changes with each
+
+  bool visible() const { return (flags & kObjectNotVisible) == 0; }
+  std::span<const ArticulatedPart> parts() const { return {part_array.data(), part_count}; }
+  uint32_t damage() const { return (appearance >> 3) & 3; }  // 0 none .. 3 destroyed
+};
+
+// Bits of appearance that mean the same in every kind of entity.
+inline constexpr uint32_t kAppearanceFrozen = uint32_t{1} << 21;
+inline constexpr uint32_t kAppearanceDeactivated = uint32_t{1} << 23;
+
+struct ObjectSnapshot {
+  std::vector<ObjectRecord> objects;  // in the order of id
+  double time_s = 0;                  // when it was taken
+  uint64_t number = 0;                // counts snapshots
+
+  const ObjectRecord* Find(EntityId id) const;  // nullptr when it is not there
+};
+
+// What may have changed without the rest: an Entity State Update.
+struct ObjectChange {
+  glm::dvec3 position_ecef{0.0};
+  glm::dvec3 velocity_mps{0.0};
+  EulerAngles orientation;
+  uint32_t appearance = 0;
+  double time_s = 0;
+};
+
+struct ObjectTableOptions {
+  size_t capacity = 100'000;
+  double timeout_s = 12.0;
+  double publish_interval_s = 0.05;
+};
+
+struct ObjectTableCounters {
+  size_t alive = 0, most_alive = 0;
+  uint64_t added = 0, removed = 0, timed_out = 0, crowded_out = 0, out_of_order = 0, clamped = 0, not_visible = 0;
+};
+
+class ObjectTable {
+ public:
+  using Options = ObjectTableOptions;
+  explicit ObjectTable(const Options& options = {});
+  ObjectTable(const ObjectTable&) = delete;
+  ObjectTable& operator=(const ObjectTable&) = delete;
+
+  // Adds or replaces. Fills flags and report, clamps the motion; a deactivated entity is removed instead. A record
+  // whose state is up to 2 s older than the one there came out of order: only received_s moves. REQUIRES: kinematics
+  // are finite.
+  void Put(const ObjectRecord& record) EXCLUDES_LOCK(mutex_);
+  // False when the object is not known (its type and model are not, so there is nothing to show).
+  bool Change(EntityId id, const ObjectChange& change, double received_s) EXCLUDES_LOCK(mutex_);
+  bool Remove(EntityId id) EXCLUDES_LOCK(mutex_);
+  // Drops what has timed out and publishes what has changed, if it is time for either. Writers call it after a batch.
+  void Tick(double now_s) EXCLUDES_LOCK(mutex_, published_mutex_);
+  // When Tick next has something to do, though nothing more is put; nullopt: never.
+  std::optional<double> NextTick() const EXCLUDES_LOCK(mutex_);
+
+  // Never null. As of the last Tick that published.
+  std::shared_ptr<const ObjectSnapshot> Snapshot() const EXCLUDES_LOCK(published_mutex_);
+  ObjectTableCounters Counters() const EXCLUDES_LOCK(mutex_);
+
+ private:
+  using Slot = uint32_t;
+  static constexpr Slot kNoSlot = ~Slot{0};
+  struct Entry {
+    ObjectRecord record;
+    Slot staler = kNoSlot, fresher = kNoSlot;  // neighbours in the order of received_s
+  };
+
+  Slot AddSlot(EntityId id) REQUIRES_LOCK(mutex_);
+  void Drop(Slot slot) REQUIRES_LOCK(mutex_);
+  void Unlink(Slot slot) REQUIRES_LOCK(mutex_);
+  void LinkFreshest(Slot slot) REQUIRES_LOCK(mutex_);
+  void Accept(Slot slot, const ObjectRecord& record) REQUIRES_LOCK(mutex_);
+  std::shared_ptr<const ObjectSnapshot> Build(double now_s) REQUIRES_LOCK(mutex_);
+
+  const Options options_;
+  mutable Mutex mutex_;
+  std::vector<Entry> entries_ GUARDED_BY(mutex_);
+  std::vector<Slot> free_ GUARDED_BY(mutex_);
+  std::map<EntityId, Slot> slots_ GUARDED_BY(mutex_);
+  Slot stalest_ GUARDED_BY(mutex_) = kNoSlot;
+  Slot freshest_ GUARDED_BY(mutex_) = kNoSlot;
+  bool changed_ GUARDED_BY(mutex_) = false;
+  double next_publish_s_ GUARDED_BY(mutex_);
+  uint64_t snapshots_ GUARDED_BY(mutex_) = 0;
+  ObjectTableCounters counters_ GUARDED_BY(mutex_);
+
+  mutable Mutex published_mutex_;
+  std::shared_ptr<const ObjectSnapshot> published_ GUARDED_BY(published_mutex_);
+};
+
+}  // namespace belvedere
+
+template <>
+struct std::hash<belvedere::EntityId> {
+  size_t operator()(belvedere::EntityId id) const noexcept {
+    const uint64_t word = uint64_t{id.site} << 32 | uint64_t{id.application} << 16 | id.entity;
+    const uint64_t mixed = word * 0x9E3779B97F4A7C15u;
+    return static_cast<size_t>(mixed ^ (mixed >> 32));
+  }
+};
