@@ -1,8 +1,8 @@
 // One-line messages for a person, to standard error.
 //
-// Info is for what a user would want to know without asking, Warning for what was wrong but gone on from, Error for what
-// could not be done. A message names what, where and what to do. LogOnce-style limits are the caller's to keep: nothing
-// that arrives from a network may log without a bound.
+// Info is for what a user would want to know without asking, Warning for what was wrong but gone on from, Error for
+// what could not be done. A message names what, where and what to do. LogOnce-style limits are the caller's to keep:
+// nothing that arrives from a network may log without a bound.
 //
 // Threads: any.
 #pragma once

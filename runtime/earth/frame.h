@@ -19,7 +19,7 @@ namespace belvedere {
 inline constexpr int kFrameLevel = 8;
 
 struct Frame {
-  Quadcode node;                // whose frame it is
+  Quadcode node;  // whose frame it is
   glm::dvec3 origin_ecef{};
   glm::dmat3 ecef_from_frame{};  // columns x (east), y (north), z (up)
 
@@ -29,7 +29,9 @@ struct Frame {
 };
 
 // The quadnode whose frame the vertices of this one are in.
-inline Quadcode FrameNode(Quadcode node) { return node.level() > kFrameLevel ? node.Ancestor(kFrameLevel) : node; }
+inline Quadcode FrameNode(Quadcode node) {
+  return node.level() > kFrameLevel ? node.Ancestor(kFrameLevel) : node;
+}
 // The frame of FrameNode(node).
 Frame FrameOf(Quadcode node);
 

@@ -7,8 +7,8 @@
 // 45 degrees / 2^29 east of 180 W (it wraps at 2^32, as longitude does), y the same units north of 90 S, 0 .. 2^31.
 // A quadnode of level L spans 2^(29-L) units each way. Level 22, the finest, has posts 9 mm apart.
 //
-// A quadnode carries kPosts x kPosts = 129 x 129 posts; the outermost ones lie on its border and are shared, bit for bit,
-// with its neighbours. Posts are numbered row by row from the south-west corner: index = row * kPosts + column.
+// A quadnode carries kPosts x kPosts = 129 x 129 posts; the outermost ones lie on its border and are shared, bit for
+// bit, with its neighbours. Posts are numbered row by row from the south-west corner: index = row * kPosts + column.
 #pragma once
 
 #include <compare>
@@ -49,8 +49,8 @@ class Quadcode {
  public:
   constexpr Quadcode() = default;  // root of tree 0
   static constexpr Quadcode Root(int tree) { return Quadcode(static_cast<uint64_t>(tree) << kTreeShift); }
-  // column and row count nodes of that level over the whole Earth: column 0..8*2^L-1 from 180 W (taken modulo the count),
-  // row 0..4*2^L-1 from 90 S. REQUIRES: 0 <= level <= kMaxLevel and row in range.
+  // column and row count nodes of that level over the whole Earth: column 0..8*2^L-1 from 180 W (taken modulo the
+  // count), row 0..4*2^L-1 from 90 S. REQUIRES: 0 <= level <= kMaxLevel and row in range.
   static Quadcode FromColumnRow(int level, int64_t column, int64_t row);
   // The node of that level that contains the position; on a border the one east or north of it.
   static Quadcode Containing(double latitude_deg, double longitude_deg, int level);
@@ -64,7 +64,9 @@ class Quadcode {
   bool is_root() const { return code() == 0; }
 
   // which: 0 SW, 1 SE, 2 NW, 3 NE. REQUIRES: level() < kMaxLevel
-  Quadcode Child(int which) const { return Quadcode((word_ & ~kCodeMask) | (4 * code() + 1 + static_cast<uint64_t>(which))); }
+  Quadcode Child(int which) const {
+    return Quadcode((word_ & ~kCodeMask) | (4 * code() + 1 + static_cast<uint64_t>(which)));
+  }
   // REQUIRES: !is_root()
   Quadcode Parent() const { return Quadcode((word_ & ~kCodeMask) | ((code() - 1) / 4)); }
   int WhichChild() const { return static_cast<int>((code() - 1) % 4); }

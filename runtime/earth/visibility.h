@@ -44,8 +44,8 @@ class Horizon {
   bool Hides(const BoundingSphere& sphere) const;
 
  private:
-  glm::dvec3 eye_scaled_{};          // in units of the shrunken ellipsoid
-  double horizon_squared_ = -1;      // |eye|^2 - 1; negative when the eye is inside: nothing is hidden
+  glm::dvec3 eye_scaled_{};      // in units of the shrunken ellipsoid
+  double horizon_squared_ = -1;  // |eye|^2 - 1; negative when the eye is inside: nothing is hidden
 };
 
 }  // namespace belvedere

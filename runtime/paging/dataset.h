@@ -70,9 +70,7 @@ class Dataset {
   // Quadcode words of the layer's pages, ascending.
   virtual std::span<const uint64_t> Nodes(int layer) const = 0;
   // Whether the page is there and its children too (which exist together).
-  bool HasChildren(int layer, Quadcode node) const {
-    return node.level() < kMaxLevel && Exists(layer, node.Child(0));
-  }
+  bool HasChildren(int layer, Quadcode node) const { return node.level() < kMaxLevel && Exists(layer, node.Child(0)); }
   int MaxLevel(int layer) const { return layers()[static_cast<size_t>(layer)].max_level; }
   // Finest existing page that contains the position; its level is at most max_level.
   Quadcode FinestContaining(int layer, double latitude_deg, double longitude_deg, int max_level = kMaxLevel) const;

@@ -1,7 +1,7 @@
 // DatasetWriter: makes a dataset's store, in batches of pages, each batch one transaction.
 //
-// The store is written to PATH.partial and moved over PATH by Finish, so a build that fails or is killed leaves what was
-// at PATH before. A store that was left unfinished is overwritten by the next build.
+// The store is written to PATH.partial and moved over PATH by Finish, so a build that fails or is killed leaves what
+// was at PATH before. A store that was left unfinished is overwritten by the next build.
 //
 // Threads: one at a time.
 #pragma once

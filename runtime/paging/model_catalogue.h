@@ -1,5 +1,5 @@
-// ModelCatalogue: which model shows which kind of entity. A table of numbers, so that managers and the object server agree
-// on what a model page's key means without either knowing the other.
+// ModelCatalogue: which model shows which kind of entity. A table of numbers, so that managers and the object server
+// agree on what a model page's key means without either knowing the other.
 //
 // Threads: read-only after it was made.
 #pragma once
@@ -14,7 +14,8 @@ namespace belvedere {
 
 struct ModelEntry {
   std::string name;  // file name without its ending: "airliner" is read from airliner.gltf
-  float length_m = 10;  // of the real thing, nose to tail: scales the model and says how large it is before it is loaded
+  float length_m =
+      10;  // of the real thing, nose to tail: scales the model and says how large it is before it is loaded
 };
 
 class ModelCatalogue {

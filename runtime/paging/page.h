@@ -79,7 +79,8 @@ struct ImagePage final : Page {
 
   static constexpr size_t MipOffset(int level, ImageFormat format) {
     size_t texels_before = 0;
-    for (int l = 0; l < level; ++l) texels_before += static_cast<size_t>(kImageSide >> l) * static_cast<size_t>(kImageSide >> l);
+    for (int l = 0; l < level; ++l)
+      texels_before += static_cast<size_t>(kImageSide >> l) * static_cast<size_t>(kImageSide >> l);
     return texels_before * static_cast<size_t>(format);
   }
   size_t bytes() const override { return sizeof(*this) + texels.capacity(); }
@@ -87,8 +88,8 @@ struct ImagePage final : Page {
 
 // ---- terrain: what the terrain server makes of heights --------------------------------------------------------------
 struct TerrainVertex {
-  float x, y, z;     // metres in the quadnode's coordinate frame (frame.h)
-  uint32_t normal;   // outward normal in the same frame: octahedral, snorm16 x in the low half, y in the high half
+  float x, y, z;    // metres in the quadnode's coordinate frame (frame.h)
+  uint32_t normal;  // outward normal in the same frame: octahedral, snorm16 x in the low half, y in the high half
 };
 inline constexpr int kVerticesPerPage = kPosts * kPosts;
 inline constexpr int kBisections = 2 * kCellsLog2;  // levels of bisection from the two root triangles to single posts
@@ -112,11 +113,12 @@ struct TerrainPage final : Page {
   }
 };
 
-// ---- models: what the object server makes of a model file ------------------------------------------------------------
+// ---- models: what the object server makes of a model file
+// ------------------------------------------------------------
 struct ModelVertex {
-  float x, y, z;                   // metres in the body frame: x forward, y right, z down
+  float x, y, z;  // metres in the body frame: x forward, y right, z down
   float normal_x, normal_y, normal_z;
-  std::array<uint8_t, 4> colour;   // sRGB
+  std::array<uint8_t, 4> colour;  // sRGB
 };
 
 struct ModelPage final : Page {

@@ -1,10 +1,11 @@
-// Paging: the three things through which pages flow, together: which layers there are, what is in memory, what is wanted.
+// Paging: the three things through which pages flow, together: which layers there are, what is in memory, what is
+// wanted.
 //
-// Managers find pages in `cache` and wish for missing ones through the queue of their data type; the server of that data
-// type takes wishes from the queue, reads or makes the page, and inserts it. Nobody else talks to a server.
+// Managers find pages in `cache` and wish for missing ones through the queue of their data type; the server of that
+// data type takes wishes from the queue, reads or makes the page, and inserts it. Nobody else talks to a server.
 //
-// Model pages are keyed by a quadcode too, for one kind of key serves all: ModelNode(number) names the model of that number
-// in the model catalogue (model_catalogue.h) and says nothing about a place.
+// Model pages are keyed by a quadcode too, for one kind of key serves all: ModelNode(number) names the model of that
+// number in the model catalogue (model_catalogue.h) and says nothing about a place.
 //
 // Threads: `layers` is read-only after the start; cache and queues are for any thread.
 #pragma once

@@ -13,8 +13,8 @@
 
 #include "runtime/base/clock.h"
 #include "runtime/base/mutex.h"
-#include "runtime/paging/page.h"
 #include "runtime/base/view_id.h"
+#include "runtime/paging/page.h"
 
 #include <cstddef>
 #include <cstdint>

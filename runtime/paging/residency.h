@@ -1,8 +1,9 @@
 // Residency: whether, and in which slot, the render thread holds a page on the GPU; and who still draws from there.
 //
-// A manager that wants to draw a page calls TryPin. If the page is on the GPU the pin succeeds, and the slot stays until
-// Unpin; if not, the manager asks for it in its display list and draws the ancestor meanwhile. The render thread alone
-// calls Place and TryEvict; TryEvict fails while any pin is held, so a slot named by a display list is always valid.
+// A manager that wants to draw a page calls TryPin. If the page is on the GPU the pin succeeds, and the slot stays
+// until Unpin; if not, the manager asks for it in its display list and draws the ancestor meanwhile. The render thread
+// alone calls Place and TryEvict; TryEvict fails while any pin is held, so a slot named by a display list is always
+// valid.
 //
 // Threads: TryPin, Unpin any; Place, TryEvict the render thread.
 #pragma once

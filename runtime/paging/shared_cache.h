@@ -6,7 +6,7 @@
 // pages asks PinnedBytes() and stops refining before that happens (managers do).
 //
 // A page that could not be read or made is a state too: MarkFailed keeps the reason, Find returns no pin, and FailureOf
-// says why. A failure is final until Forget or until the cache is told that the dataset changed.
+// says why. A failure is final until Forget, or until a page of that key is inserted after all.
 //
 // Insert of a key that is resident keeps the page that is there, so that two servers that made the same page by chance
 // agree: use the pin that Insert returns.
@@ -93,11 +93,15 @@ class SharedCache {
   void MarkFailed(const PageKey& key, Status reason);
   // ok when the key has not failed.
   Status FailureOf(const PageKey& key) const;
+  // Lets a failed page be tried again.
+  void Forget(const PageKey& key);
   // Every failure there is, for the user; at most `most`.
   std::vector<std::string> Failures(size_t most) const;
 
   Statistics Stats() const;
   size_t PinnedBytes() const;
+  // What a page counts against the budget: its own bytes and what the cache keeps with it.
+  static size_t ChargeOf(const Page& page);
   size_t budget_bytes() const { return budget_bytes_; }
 
  private:
@@ -105,7 +109,9 @@ class SharedCache {
   struct Table;
 
   void Unpin(PagePin::Entry* entry);
-  void EvictOverBudget();
+  PagePin FindQuietly(const PageKey& key);
+  void Reserve(size_t charge_bytes);
+  bool EvictOne();
 
   const size_t budget_bytes_;
   std::vector<std::unique_ptr<Table>> tables_;

@@ -1,7 +1,7 @@
 // DisplayList: all that the render thread needs to draw one manager's part of one view, as plain records.
 //
-// A manager builds a list, publishes it through its triple buffer and does not touch it again until the buffer hands the
-// memory back. The render thread walks the records in order; a cull-begin whose volume is hidden jumps past its
+// A manager builds a list, publishes it through its triple buffer and does not touch it again until the buffer hands
+// the memory back. The render thread walks the records in order; a cull-begin whose volume is hidden jumps past its
 // cull-end. Records:
 //
 //   kCullBegin      index -> volumes; skip = record to go on with when hidden (one past the matching kCullEnd)
@@ -58,8 +58,8 @@ struct ImageUse {
 
 struct TerrainSlot {
   int32_t slot = 0;
-  uint32_t frame = 0;       // index -> frames
-  GridPoint south_west;     // of the page's quadnode
+  uint32_t frame = 0;         // index -> frames
+  GridPoint south_west;       // of the page's quadnode
   uint32_t post_spacing = 0;  // grid units between posts
 };
 
@@ -71,9 +71,9 @@ struct TerrainDraw {
 };
 
 struct ObjectLook {
-  int32_t model_slot = -1;  // GPU slot of the model page; -1: symbol only
-  uint8_t detail = 0;       // level of detail of the model, 0 the finest
-  uint8_t symbol = 0;       // SymbolShape
+  int32_t model_slot = -1;                            // GPU slot of the model page; -1: symbol only
+  uint8_t detail = 0;                                 // level of detail of the model, 0 the finest
+  uint8_t symbol = 0;                                 // SymbolShape
   std::array<uint8_t, 4> colour{255, 255, 255, 255};  // force colour of symbol and label
   float scale = 1;
 };
@@ -88,8 +88,8 @@ struct ObjectInstance {
   glm::dvec3 angular_velocity_body{};  // radians/s
   double radius_m = 0;
   ObjectLook look;
-  uint32_t label = 0;                  // index -> labels, 0 none
-  uint64_t object = 0;                 // ObjectId, for picking and for tests
+  uint32_t label = 0;   // index -> labels, 0 none
+  uint64_t object = 0;  // ObjectId, for picking and for tests
 };
 
 struct DisplayList {
@@ -108,16 +108,16 @@ struct DisplayList {
   std::vector<std::string> labels;  // labels[0] is empty
 
   std::vector<PagePin> page_pins;
-  std::vector<Residency*> gpu_pins;  // pages of page_pins; unpinned by Clear
+  std::vector<Residency*> gpu_pins;  // of pages in page_pins; unpinned by Clear
   std::vector<PagePin> uploads;
 
   struct Statistics {
     uint32_t triangles = 0;
     uint32_t nodes = 0;
-    double achieved_error_px = 0;   // largest screen-space error that the list leaves within the view
-    uint32_t pages_waiting = 0;     // pages wished for and not yet drawn
-    bool behind = false;            // some visible quadnode is coarser than the bound asks
-    bool settled = false;           // nothing more will come for these view parameters
+    double achieved_error_px = 0;      // largest screen-space error that the list leaves within the view
+    uint32_t pages_waiting = 0;        // pages wished for and not yet drawn
+    bool behind = false;               // some visible quadnode is coarser than the bound asks
+    bool settled = false;              // nothing more will come for these view parameters
     double height_above_ground_m = 0;  // of the eye, over the finest resident surface under it
     double build_ms = 0;
   } statistics;

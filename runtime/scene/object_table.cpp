@@ -25,7 +25,7 @@ uint8_t PositionFlags(const glm::dvec3& ecef) {
   const double sine = ecef.z / radius_m;
   const double surface_m =
       kEquatorialRadius_m / std::sqrt(1.0 + sine * sine * kEccentricitySquared / (1.0 - kEccentricitySquared));
-  return radius_m < surface_m - kDeepest_m ? kObjectUnderground : uint8_t{0};
+  return radius_m < surface_m - kDeepest_m ? uint8_t{kObjectUnderground} : uint8_t{0};
 }
 
 }  // namespace
@@ -119,6 +119,14 @@ bool ObjectTable::Remove(EntityId id) {
   ++counters_.removed;
   Drop(known->second);
   return true;
+}
+
+std::vector<EntityId> ObjectTable::Ids() const {
+  MutexLock lock(mutex_);
+  std::vector<EntityId> ids;
+  ids.reserve(slots_.size());
+  for (const auto& [id, slot] : slots_) ids.push_back(id);
+  return ids;
 }
 
 void ObjectTable::Tick(double now_s) {

@@ -152,6 +152,8 @@ class ObjectTable {
   // False when the object is not known (its type and model are not, so there is nothing to show).
   bool Change(EntityId id, const ObjectChange& change, double received_s) EXCLUDES_LOCK(mutex_);
   bool Remove(EntityId id) EXCLUDES_LOCK(mutex_);
+  // Of every object known now, in order.
+  std::vector<EntityId> Ids() const EXCLUDES_LOCK(mutex_);
   // Drops what has timed out and publishes what has changed, if it is time for either. Writers call it after a batch.
   void Tick(double now_s) EXCLUDES_LOCK(mutex_, published_mutex_);
   // When Tick next has something to do, though nothing more is put; nullopt: never.

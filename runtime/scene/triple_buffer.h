@@ -37,9 +37,9 @@ class TripleBuffer {
   static constexpr uint8_t kFresh = 4;
 
   std::array<T, 3> values_{};
-  uint8_t back_ = 0;                // producer's own
+  uint8_t back_ = 0;  // producer's own
   std::atomic<uint8_t> middle_{1};
-  uint8_t front_ = 2;               // consumer's own
+  uint8_t front_ = 2;  // consumer's own
 };
 
 }  // namespace belvedere

@@ -12,8 +12,9 @@ namespace belvedere {
 namespace {
 
 constexpr double kHighestGround_m = 9'000.0;
-constexpr double kNearShareOfHeight =
-    0.2;  // of the height above ground: nothing of the Earth is nearer than that in practice
+// Of the height above the ground. Reverse-Z in 32-bit floats is as exact far away as near by, so the near plane need only
+// stay in front of the nearest object: a tethered eye is some tens of metres from its aircraft at any height.
+constexpr double kNearShareOfHeight = 5e-4;
 constexpr double kNearest_m = 0.1;
 
 double FarPlane(double ellipsoid_height_m) {

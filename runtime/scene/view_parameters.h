@@ -1,7 +1,7 @@
 // ViewParameters: all that managers and the render thread need to know of one view, as one immutable value.
 //
-// The UI thread owns the master copy and publishes a new value whenever something changes; managers and the render thread
-// take the newest one. The eye may move between two values (a tethered view): whoever uses one extrapolates with
+// The UI thread owns the master copy and publishes a new value whenever something changes; managers and the render
+// thread take the newest one. The eye may move between two values (a tethered view): whoever uses one extrapolates with
 // eye_velocity to its own time, as objects are extrapolated, so that both stay in step.
 //
 // Frames: eye and axes in ECEF, metres. Camera axes: right, up, backward (the view looks along -backward).
@@ -23,15 +23,13 @@
 
 namespace belvedere {
 
-
-
 enum class Projection : uint8_t { kPerspective, kOrthographic };
 
 struct ViewParameters {
   ViewId view = 0;
-  uint64_t number = 0;    // grows with every published value
-  double time_s = 0;      // clock time at which the eye was there
-  double utc_s = 0;       // simulation time of that moment: where the sun stands
+  uint64_t number = 0;  // grows with every published value
+  double time_s = 0;    // clock time at which the eye was there
+  double utc_s = 0;     // simulation time of that moment: where the sun stands
   glm::dvec3 eye_ecef{};
   glm::dvec3 eye_velocity_mps{};
   glm::dmat3 ecef_from_camera{1.0};  // columns right, up, backward
@@ -40,16 +38,16 @@ struct ViewParameters {
   double ortho_height_m = 1e6;               // orthographic: ground that the height of the picture spans
   int width_px = 1024, height_px = 768;
 
-  double error_px = 2.0;   // bound on the screen-space error
-  double texel_px = 1.25;  // bound on the size of a texel on the screen
+  double error_px = 2.0;               // bound on the screen-space error
+  double texel_px = 1.25;              // bound on the size of a texel on the screen
   std::vector<DataType> image_layers;  // drawn over each other in this order: first a colour layer, then overlays
   bool draw_objects = true;
-  bool symbols = false;    // objects as symbols of constant size instead of models (the overview)
+  bool symbols = false;  // objects as symbols of constant size instead of models (the overview)
   bool labels = true;
   bool hud = true;
   bool sky = true;
   bool wireframe = false;
-  bool frozen = false;     // managers keep the cut that they have while the eye flies on
+  bool frozen = false;         // managers keep the cut that they have while the eye flies on
   glm::vec3 background{0.0F};  // linear RGB where nothing is drawn (seen with sky off)
 
   glm::dvec3 EyeAt(double clock_time_s) const { return eye_ecef + eye_velocity_mps * (clock_time_s - time_s); }
@@ -71,11 +69,12 @@ struct ViewMatrices {
   double pixels_per_metre = 0;
 };
 
-// Near plane from the height above the ground (terrain or ellipsoid, metres), far plane from the horizon beyond which not
-// even the highest mountain is seen.
+// Near plane from the height above the ground (terrain or ellipsoid, metres), far plane from the horizon beyond which
+// not even the highest mountain is seen.
 ViewMatrices MatricesOf(const ViewParameters& view, double clock_time_s, double height_above_ground_m);
 
-// Camera axes for a heading (clockwise from north), pitch (0 level, -90 straight down) and roll (right wing down) at a position.
+// Camera axes for a heading (clockwise from north), pitch (0 level, -90 straight down) and roll (right wing down) at a
+// position.
 glm::dmat3 CameraAxes(double latitude_deg, double longitude_deg, Radians heading, Radians pitch, Radians roll);
 
 }  // namespace belvedere

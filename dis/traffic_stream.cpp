@@ -1,0 +1,125 @@
+#include "dis/traffic_stream.h"
+
+#include "dis/timestamp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+namespace belvedere::dis {
+namespace {
+
+constexpr double kStep_s = 0.05;
+constexpr uint64_t kStepsPerCheck = 2;  // each entity is looked at every other step
+constexpr uint64_t kStepsToStart = 20;  // first reports are spread over a second
+constexpr double kRateStep_s = 0.005;   // with a rate: how finely PDUs are handed over
+constexpr size_t kPerApplication = 60000;
+
+EntityState ToEntityState(const Vehicle& vehicle, const EntityId& id, const KinematicState& motion) {
+  EntityState state;
+  state.id = id;
+  state.force = vehicle.force;
+  state.type = state.alternative_type = vehicle.type;
+  state.appearance = vehicle.appearance;
+  std::ranges::copy(vehicle.marking.view(), state.marking.begin());
+  state.model = static_cast<uint8_t>(motion.model);
+  state.position_ecef = motion.position_ecef;
+  state.velocity_mps = glm::vec3(motion.velocity_mps);
+  state.acceleration_mps2 = glm::vec3(motion.acceleration_mps2);
+  state.angular_velocity_radps = glm::vec3(motion.angular_velocity_radps);
+  const EulerAngles& angles = motion.orientation;
+  state.orientation_rad = glm::vec3(glm::dvec3(angles.psi_rad, angles.theta_rad, angles.phi_rad));
+  return state;
+}
+
+// What a receiver makes of it: the floats of the wire.
+KinematicState AsReceived(const EntityState& state, double time_s) {
+  KinematicState motion;
+  motion.position_ecef = state.position_ecef;
+  motion.velocity_mps = glm::dvec3(state.velocity_mps);
+  motion.acceleration_mps2 = glm::dvec3(state.acceleration_mps2);
+  motion.angular_velocity_radps = glm::dvec3(state.angular_velocity_radps);
+  motion.orientation = {state.orientation_rad.x, state.orientation_rad.y, state.orientation_rad.z};
+  motion.model = DeadReckoningModel(state.model);
+  motion.time_s = time_s;
+  return motion;
+}
+
+double AngleBetween(const glm::dmat3& a, const glm::dmat3& b) {
+  const double trace = glm::dot(a[0], b[0]) + glm::dot(a[1], b[1]) + glm::dot(a[2], b[2]);
+  return std::acos(std::clamp(0.5 * (trace - 1.0), -1.0, 1.0));
+}
+
+}  // namespace
+
+Result<TrafficStream> TrafficStream::Make(const TrafficOptions& options) {
+  auto vehicles = MakeVehicles(options.scenario, options.entities, options.seed);
+  if (!vehicles.ok()) return vehicles.status();
+  if (!(options.rate_pdus_per_s >= 0 && options.rate_pdus_per_s <= 1e6)) {
+    return Status::Error("rate {} PDUs/s: it must be from 0 to 1,000,000", options.rate_pdus_per_s);
+  }
+  return TrafficStream(options, std::move(*vehicles));
+}
+
+TrafficStream::TrafficStream(const TrafficOptions& options, std::vector<Vehicle> vehicles)
+    : options_(options), vehicles_(std::move(vehicles)), sent_(vehicles_.size()) {
+  for (KinematicState& state : sent_) state.time_s = -1;
+}
+
+EntityId TrafficStream::IdOf(size_t index) const {
+  return {options_.site, static_cast<uint16_t>(options_.application + index / kPerApplication),
+          static_cast<uint16_t>(1 + index % kPerApplication)};
+}
+
+double TrafficStream::NextStep() const {
+  return static_cast<double>(steps_) * (options_.rate_pdus_per_s > 0 ? kRateStep_s : kStep_s);
+}
+
+std::span<const uint8_t> TrafficStream::Advance(double time_s) {
+  bytes_.clear();
+  while (NextStep() <= time_s) {
+    Step(NextStep());
+    ++steps_;
+  }
+  return bytes_;
+}
+
+void TrafficStream::Step(double time_s) {
+  if (options_.rate_pdus_per_s > 0) {
+    while (static_cast<double>(pdus_) <= time_s * options_.rate_pdus_per_s) {
+      Emit(pdus_ % vehicles_.size(), static_cast<double>(pdus_) / options_.rate_pdus_per_s);
+    }
+    return;
+  }
+  for (size_t i = 0; i < vehicles_.size(); ++i) {
+    const bool started = sent_[i].time_s >= 0;
+    const bool looked_at = started ? (steps_ + i) % kStepsPerCheck == 0 : steps_ >= i % kStepsToStart;
+    if (looked_at && (!started || IsDue(i, time_s))) Emit(i, time_s);
+  }
+}
+
+bool TrafficStream::IsDue(size_t index, double time_s) const {
+  const KinematicState& sent = sent_[index];
+  if (time_s - sent.time_s >= options_.heartbeat_s - 0.5 * kStep_s) return true;
+  const Pose believed = PoseAt(sent, time_s);
+  const Pose truth = TruePose(vehicles_[index].course, time_s);
+  return glm::length(believed.position_ecef - truth.position_ecef) > options_.position_threshold_m ||
+         AngleBetween(believed.ecef_from_body, truth.ecef_from_body) > options_.orientation_threshold_rad;
+}
+
+void TrafficStream::Emit(size_t index, double time_s) {
+  const Vehicle& vehicle = vehicles_[index];
+  const EntityState state = ToEntityState(vehicle, IdOf(index), Report(vehicle.course, vehicle.model, time_s));
+  sent_[index] = AsReceived(state, time_s);
+  const bool absolute = options_.utc_at_start_s >= 0;
+  PduHeader header;
+  header.version = options_.version;
+  header.exercise = options_.exercise;
+  header.timestamp = MakeTimestamp(time_s + (absolute ? options_.utc_at_start_s : 0.0), absolute);
+  const size_t at = bytes_.size();
+  bytes_.resize(at + kEntityStateBytes);
+  EncodeEntityState(header, state, std::span(bytes_).subspan(at));
+  ++pdus_;
+}
+
+}  // namespace belvedere::dis

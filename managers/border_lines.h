@@ -1,0 +1,49 @@
+// BorderLines: the grid lines along which quadnodes of a cut meet, and the one vertex that each position on them has.
+//
+// Every quadnode adds the posts that it draws on its four borders. Seal then settles, for each position, the canonical
+// vertex: that of the finest quadnode, among equals that of the least quadcode. All quadnodes that touch a position in
+// their corner agree on it along the meridian and along the parallel, since the finest of them always has it in a
+// corner.
+//
+// Units: positions in grid units (quadcode.h); vertices as absolute numbers (display_list.h).
+// Threads: one.
+#pragma once
+
+#include "runtime/earth/quadcode.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace belvedere {
+
+enum class Border : uint8_t { kWest, kEast, kSouth, kNorth };
+
+struct BorderVertex {
+  uint64_t line = 0;      // meridian: grid x; parallel: grid y with kParallel set
+  uint64_t position = 0;  // along the line; 2^32 on a parallel is 180 E seen from the west
+  uint32_t vertex = 0;
+  uint32_t rank = 0;  // lower wins
+};
+
+class BorderLines {
+ public:
+  void Clear();
+  // rank: the place of the quadnode among all of the cut, finest first (RankNodes).
+  void Add(Quadcode node, Border border, int post, uint32_t vertex, uint32_t rank);
+  // No Add after this.
+  void Seal();
+
+  // Canonical vertices along that border of the quadnode, corners included, from its south or west end.
+  std::span<const BorderVertex> Along(Quadcode node, Border border) const;
+
+  static uint64_t PositionOf(Quadcode node, Border border, int post);
+
+ private:
+  static constexpr uint64_t kParallel = uint64_t{1} << 32;
+  static uint64_t LineOf(Quadcode node, Border border);
+
+  std::vector<BorderVertex> vertices_;
+};
+
+}  // namespace belvedere

@@ -1,0 +1,272 @@
+#include "managers/cut.h"
+
+#include "runtime/earth/ellipsoid.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace belvedere {
+namespace {
+
+constexpr double kShareOutOfFrustum = 0.25;  // of the error that counts for a quadnode beside the picture
+constexpr double kLeastStretch = 0.02;       // straight down is never quite straight down for all of a quadnode
+constexpr double kNearest_m = 0.5;
+constexpr float kRootPriority = 1e6F;  // roots first: without them nothing is drawn
+constexpr double kShareForPage = 0.7;  // of the bound, that a page's own remaining error may take
+constexpr double kMetresPerDegree = 111'320.0;
+constexpr float kGreatestPriority = 1e5F;
+
+struct Measure {
+  double error_scale = 0;     // see CutNode
+  double metre_px = 0;        // pixels that one metre across the line of sight spans, at the quadnode's nearest point
+  double error_metre_px = 0;  // pixels that one metre of vertical error spans there, at most
+  double share = 1;           // of what is measured counts: 1 in view, less beside it, 0 behind the horizon
+};
+
+class Selection {
+ public:
+  Selection(const ViewParameters& view, const ViewMatrices& matrices, const LayerTable& layers, DataType terrain,
+            const CutLimits& limits, PageAccess& pages)
+      : view_(view),
+        matrices_(matrices),
+        layers_(layers),
+        terrain_(terrain),
+        limits_(limits),
+        pages_(pages),
+        sight_(SightOf(view, matrices.eye_ecef)),
+        eye_height_m_(ToGeodetic(matrices.eye_ecef).height_m) {
+    const double tan_half = std::tan(0.5 * view.vertical_fov.value);
+    half_picture_ = {tan_half * view.width_px / view.height_px, tan_half};
+  }
+
+  Cut Run() {
+    struct Root {
+      Quadcode node;
+      const TerrainPage* page;
+      int slot;
+      double distance_m;
+    };
+    std::vector<Root> roots;
+    for (int tree = 0; tree < kTrees; ++tree) {
+      const Quadcode node = Quadcode::Root(tree);
+      if (const std::optional<int> slot = Drawable(node)) {
+        const TerrainPage* page = pages_.Terrain(node);
+        roots.push_back({node, page, *slot, glm::distance(page->center_ecef, matrices_.eye_ecef) - page->radius_m});
+      } else {
+        cut_.waiting |= pages_.Want({terrain_, node}, kRootPriority);
+        cut_.behind = true;
+      }
+    }
+    std::sort(roots.begin(), roots.end(), [](const Root& a, const Root& b) { return a.distance_m < b.distance_m; });
+    for (const Root& root : roots) Visit(root.node, *root.page, root.slot);
+    return std::move(cut_);
+  }
+
+ private:
+  std::optional<int> Drawable(Quadcode node) {
+    if (pages_.Terrain(node) == nullptr) return std::nullopt;
+    return pages_.Slot({terrain_, node});
+  }
+
+  void Visit(Quadcode node, const TerrainPage& page, int slot) {
+    const auto begin = static_cast<uint32_t>(cut_.records.size());
+    cut_.records.push_back({ListRecord::Kind::kCullBegin, static_cast<uint32_t>(cut_.volumes.size()), 0, 0});
+    cut_.volumes.push_back({page.center_ecef, page.radius_m});
+
+    const Measure measure = MeasureOf(page);
+    // A page that only just keeps the bound with every post drawn would have to draw them all: better the finer pages,
+    // of which few posts are needed.
+    const double geometry_ratio =
+        page.error_m * measure.error_metre_px * measure.share / (kShareForPage * view_.error_px);
+    const double ratio = std::max(geometry_ratio, TextureRatio(node, measure));
+    if (ratio <= 1.0 || !Refine(node, measure, ratio))
+      Draw(node, page, slot, measure, geometry_ratio * kShareForPage <= 1.0);
+
+    cut_.records.push_back({ListRecord::Kind::kCullEnd, 0, 0, 0});
+    cut_.records[begin].skip = static_cast<uint32_t>(cut_.records.size());
+  }
+
+  // Draws the children instead of the quadnode, if they all can be.
+  bool Refine(Quadcode node, const Measure& measure, double ratio) {
+    if (node.level() >= layers_.at(terrain_).max_level || !layers_.at(terrain_).exists(node.Child(0))) return false;
+    const bool visible = measure.share >= 1.0;
+    if (static_cast<int>(cut_.nodes.size()) + 3 > limits_.max_nodes) {
+      cut_.at_limit = true;
+      cut_.behind |= visible;
+      return false;
+    }
+    struct Child {
+      Quadcode node;
+      const TerrainPage* page = nullptr;
+      int slot = 0;
+      double distance_m = 0;
+    };
+    std::array<Child, 4> children;
+    bool all = true;
+    for (int which = 0; which < 4; ++which) {
+      Child& child = children[static_cast<size_t>(which)];
+      child.node = node.Child(which);
+      const std::optional<int> slot = Drawable(child.node);
+      if (!slot) {
+        const auto priority = std::min(static_cast<float>(ratio), kGreatestPriority);
+        const bool coming = pages_.Want({terrain_, child.node}, priority);
+        cut_.waiting |= coming;
+        cut_.behind |= visible && coming;
+        all = false;
+        continue;
+      }
+      child.page = pages_.Terrain(child.node);
+      child.slot = *slot;
+      child.distance_m = glm::distance(child.page->center_ecef, matrices_.eye_ecef);
+    }
+    if (!all) return false;
+    std::sort(children.begin(), children.end(),
+              [](const Child& a, const Child& b) { return a.distance_m < b.distance_m; });
+    for (const Child& child : children) Visit(child.node, *child.page, child.slot);
+    return true;
+  }
+
+  void Draw(Quadcode node, const TerrainPage& page, int slot, const Measure& measure, bool finest) {
+    CutNode drawn;
+    drawn.node = node;
+    drawn.page = &page;
+    drawn.slot = slot;
+    drawn.error_scale = measure.error_scale * measure.share;
+    drawn.finest = finest;
+    drawn.visible = measure.share >= 1.0;
+    for (size_t i = 0; i < std::min(view_.image_layers.size(), size_t{kMaxImageLayers}); ++i) {
+      drawn.images[i] = ChooseImage(view_.image_layers[i], node, measure);
+    }
+    if (drawn.visible && !finest) {
+      cut_.left_over_error_px = std::max(cut_.left_over_error_px, page.error_m * measure.error_metre_px);
+    }
+    cut_.records.push_back({ListRecord::Kind::kDrawTerrain, static_cast<uint32_t>(cut_.nodes.size()), 1, 0});
+    cut_.nodes.push_back(drawn);
+  }
+
+  // Texel size over the bound, for the layers that have finer pages under the quadnode.
+  double TextureRatio(Quadcode node, const Measure& measure) const {
+    if (node.level() >= kMaxLevel) return 0;
+    const Quadcode child = node.Child(0);
+    const bool finer = std::any_of(view_.image_layers.begin(), view_.image_layers.end(), [&](DataType type) {
+      return child.level() <= layers_.at(type).max_level && layers_.at(type).exists(child);
+    });
+    return finer ? TexelRatio(node.level(), measure) : 0.0;
+  }
+
+  double TexelRatio(int level, const Measure& measure) const {
+    const double texel_m = std::ldexp(kTreeDegrees, -level) * kMetresPerDegree / kImageInner;
+    return texel_m * measure.metre_px * measure.share / view_.texel_px;
+  }
+
+  ImageUse ChooseImage(DataType type, Quadcode node, const Measure& measure) {
+    // The coarsest page whose texels are small enough is as good as any finer one.
+    int level = node.level();
+    while (level > 0 && TexelRatio(level - 1, measure) <= 1.0) --level;
+    const std::optional<Quadcode> best = layers_.DeepestExisting(type, node.Ancestor(level));
+    if (!best) return {};
+    for (Quadcode source = *best;; source = source.Parent()) {
+      if (const std::optional<int> slot = pages_.Slot({type, source})) return SubRectangle(*slot, source, node);
+      const double ratio = TexelRatio(source.level(), measure) * std::ldexp(1.0, best->level() - source.level());
+      const float priority = source.is_root() ? 0.5F * kRootPriority : static_cast<float>(std::min(ratio, 1e4));
+      if (source == *best || source.is_root()) {
+        const bool coming = pages_.Want({type, source}, priority);
+        cut_.waiting |= coming;
+        cut_.behind |= coming && measure.share >= 1.0;
+      }
+      if (source.is_root()) return {};
+    }
+  }
+
+  static ImageUse SubRectangle(int slot, Quadcode source, Quadcode node) {
+    const int levels = node.level() - source.level();
+    const double scale = std::ldexp(1.0, -levels);
+    const auto across = (int64_t{1} << levels) - 1;
+    ImageUse use;
+    use.slot = slot;
+    use.scale = static_cast<float>(scale);
+    use.offset_u = static_cast<float>(static_cast<double>(node.column() & across) * scale);
+    use.offset_v = static_cast<float>(static_cast<double>(node.row() & across) * scale);
+    return use;
+  }
+
+  Measure MeasureOf(const TerrainPage& page) const {
+    const BoundingSphere sphere{page.center_ecef, page.radius_m};
+    Measure measure;
+    if (matrices_.horizon.Hides(sphere)) {
+      measure.share = 0;
+    } else if (matrices_.frustum.Hides(sphere)) {
+      measure.share = kShareOutOfFrustum;
+    }
+    const glm::dvec3 center = (page.center_ecef - matrices_.eye_ecef) * view_.ecef_from_camera;  // camera axes
+    const glm::dvec3 up = glm::normalize(page.center_ecef) * view_.ecef_from_camera;
+    if (!sight_.perspective) {
+      measure.metre_px = matrices_.pixels_per_metre;
+      measure.error_scale = matrices_.pixels_per_metre * std::min(1.0, std::hypot(up.x, up.y) + TiltOver(page));
+      measure.error_metre_px = measure.error_scale;
+      return measure;
+    }
+    const double nearest =
+        std::max({glm::length(center) - page.radius_m, eye_height_m_ - page.max_height_m, kNearest_m});
+    const double nearest_depth = std::max(-center.z - page.radius_m, sight_.cos_corner * nearest);
+    measure.metre_px = matrices_.pixels_per_radian / nearest_depth;
+    measure.error_scale = matrices_.pixels_per_radian * GreatestStretch(page, center, up);
+    measure.error_metre_px = measure.error_scale / nearest_depth;
+    return measure;
+  }
+
+  // How far the vertical turns from the quadnode's middle to its rim, radians; and from geocentric to geodetic.
+  static double TiltOver(const TerrainPage& page) { return std::min(1.0, page.radius_m / kPolarRadius_m) + 0.0034; }
+
+  // g of cut.h, at most, over what the quadnode covers of the picture. center, up: in camera axes.
+  double GreatestStretch(const TerrainPage& page, const glm::dvec3& center, const glm::dvec3& up) const {
+    glm::dvec2 low(-half_picture_);
+    glm::dvec2 high(half_picture_);
+    const double depth = -center.z;
+    if (depth > page.radius_m) {
+      // The sphere's points lie within this of its centre, on the plane at depth 1.
+      const glm::dvec2 middle = glm::dvec2(center) / depth;
+      const double spread = page.radius_m * std::sqrt(1.0 + glm::dot(middle, middle)) / (depth - page.radius_m);
+      low = glm::clamp(middle - spread, low, high);
+      high = glm::clamp(middle + spread, low, high);
+    }
+    double greatest = 0;
+    for (const glm::dvec2 corner : {low, glm::dvec2(low.x, high.y), glm::dvec2(high.x, low.y), high}) {
+      // In camera axes z points backward: what lies ahead at depth 1 is (x, y, -1).
+      greatest = std::max(greatest, glm::length(glm::dvec2(up) + corner * up.z));
+    }
+    return std::max(kLeastStretch, greatest + TiltOver(page) * (1.0 + glm::length(half_picture_)));
+  }
+
+  const ViewParameters& view_;
+  const ViewMatrices& matrices_;
+  const LayerTable& layers_;
+  const DataType terrain_;
+  const CutLimits& limits_;
+  PageAccess& pages_;
+  const Sight sight_;
+  const double eye_height_m_;
+  glm::dvec2 half_picture_{};  // of the picture's half sides on the plane at depth 1
+  Cut cut_;
+};
+
+}  // namespace
+
+Sight SightOf(const ViewParameters& view, const glm::dvec3& eye_ecef) {
+  const double tan_half = std::tan(0.5 * view.vertical_fov.value);
+  const double aspect = static_cast<double>(view.width_px) / view.height_px;
+  return {eye_ecef, -view.ecef_from_camera[2], 1.0 / std::sqrt(1.0 + tan_half * tan_half * (1.0 + aspect * aspect)),
+          view.projection == Projection::kPerspective};
+}
+
+Cut SelectCut(const ViewParameters& view, const ViewMatrices& matrices, const LayerTable& layers, DataType terrain,
+              const CutLimits& limits, PageAccess& pages) {
+  return Selection(view, matrices, layers, terrain, limits, pages).Run();
+}
+
+}  // namespace belvedere

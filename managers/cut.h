@@ -1,0 +1,80 @@
+// Cut: the first stage of terrain selection. Chooses the quadnodes whose own posts and images are fine enough, walking
+// the 32 quadtrees from their roots.
+//
+// A quadnode is replaced by its four children when either is true within the view:
+//   geometry: what is left with every post of its page drawn, error_m, is more than error_px pixels;
+//   texture:  a texel of its own image would span more than texel_px pixels, and the layer has finer pages there;
+// and all four children can be drawn: their terrain pages are on the GPU. Until then the quadnode itself is drawn and
+// the children are asked for. So a cut always covers the whole Earth, exactly once.
+//
+// Screen-space error. A point displaced by e along the local vertical u moves on the picture by exactly
+//     e * pixels_per_radian * g / z,   g = |(u_x, u_y) - (x, y) u_z / z|
+// with x, y, z its place and u_x, u_y, u_z the vertical in camera axes, z along the line of view. g is convex in (x, y)
+// / z, so its greatest value over a quadnode is at a corner of what the quadnode covers of the picture; each quadnode
+// takes that once, as error_scale. z is taken anew for every vertex (surface_mesh.h). Quadnodes out of sight keep a
+// share of their error, so that turning the head does not start from nothing.
+//
+// Units: metres, pixels, ECEF. Threads: pure; PageAccess is called on the caller's thread.
+#pragma once
+
+#include "runtime/paging/layer_table.h"
+#include "runtime/scene/display_list.h"
+#include "runtime/scene/view_parameters.h"
+
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace belvedere {
+
+// What the cut needs to know of pages; whatever it is given stays valid as long as the list that is being built.
+class PageAccess {
+ public:
+  virtual ~PageAccess() = default;
+  // nullptr when it is not in memory.
+  virtual const TerrainPage* Terrain(Quadcode node) = 0;
+  // The page's slot on the GPU; nullopt when it is not there.
+  virtual std::optional<int> Slot(const PageKey& key) = 0;
+  // The page should come, to memory and to the GPU. False when it never will (it failed).
+  virtual bool Want(const PageKey& key, float priority) = 0;
+};
+
+// From where and which way errors are seen.
+struct Sight {
+  glm::dvec3 eye_ecef{};
+  glm::dvec3 forward_ecef{};
+  double cos_corner = 1;  // cosine of the angle from the line of view to a corner of the picture
+  bool perspective = true;
+};
+Sight SightOf(const ViewParameters& view, const glm::dvec3& eye_ecef);
+
+struct CutNode {
+  Quadcode node;
+  const TerrainPage* page = nullptr;
+  int slot = 0;
+  std::array<ImageUse, kMaxImageLayers> images{};
+  // Screen-space error of e metres at depth z: perspective e * error_scale / z, orthographic e * error_scale.
+  double error_scale = 0;
+  bool finest = true;   // page->error_m is within the bound: drawing all posts keeps it
+  bool visible = true;  // in the frustum and before the horizon
+};
+
+struct CutLimits {
+  int max_nodes = 400;  // quadnodes in a cut; more are not refined
+};
+
+struct Cut {
+  std::vector<CutNode> nodes;  // front to back; nodes[i] is drawn by the record with index i
+  std::vector<ListRecord> records;
+  std::vector<BoundingSphere> volumes;
+  bool behind = false;            // a visible quadnode is coarser than the bounds ask
+  bool waiting = false;           // a page was wanted that can still come
+  bool at_limit = false;          // CutLimits::max_nodes kept quadnodes coarse
+  double left_over_error_px = 0;  // largest error left by visible quadnodes that are not `finest`
+};
+
+// terrain: the data type of terrain pages. Images are chosen for view.image_layers.
+Cut SelectCut(const ViewParameters& view, const ViewMatrices& matrices, const LayerTable& layers, DataType terrain,
+              const CutLimits& limits, PageAccess& pages);
+
+}  // namespace belvedere

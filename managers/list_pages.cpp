@@ -1,0 +1,61 @@
+#include "managers/list_pages.h"
+
+#include <algorithm>
+#include <span>
+
+namespace belvedere {
+
+ListPages::Known& ListPages::Look(const PageKey& key) {
+  const auto [entry, is_new] = known_.try_emplace(key);
+  Known& known = entry->second;
+  if (!is_new) return known;
+  PagePin pin = paging_.cache.Find(key);
+  if (!pin) return known;
+  known.page = &pin.page();
+  if (const std::optional<int> slot = known.page->residency()->TryPin()) {
+    known.slot = *slot;
+    list_.gpu_pins.push_back(known.page->residency().get());
+  }
+  list_.page_pins.push_back(std::move(pin));
+  return known;
+}
+
+const TerrainPage* ListPages::Terrain(Quadcode node) {
+  return static_cast<const TerrainPage*>(Look({terrain_, node}).page);
+}
+
+std::optional<int> ListPages::Slot(const PageKey& key) {
+  const Known& known = Look(key);
+  return known.slot < 0 ? std::nullopt : std::optional<int>(known.slot);
+}
+
+bool ListPages::Want(const PageKey& key, float priority) {
+  Known& known = Look(key);
+  if (known.wanted) return true;
+  if (known.page != nullptr) {
+    known.wanted = true;
+    uploads_.push_back({priority, paging_.cache.Find(key)});
+    return true;
+  }
+  if (!paging_.cache.FailureOf(key).ok()) return false;
+  known.wanted = true;
+  wishes_.push_back({key, priority});
+  return true;
+}
+
+void ListPages::Finish(ViewId view, Queues queues) {
+  std::sort(wishes_.begin(), wishes_.end(), [](const Wish& a, const Wish& b) { return a.key.type < b.key.type; });
+  auto begin = wishes_.begin();
+  for (int type = 0; type < paging_.layers.size(); ++type) {
+    const auto end = std::find_if(begin, wishes_.end(), [&](const Wish& wish) { return wish.key.type != type; });
+    const bool is_model = paging_.layers.at(static_cast<DataType>(type)).kind == PageKind::kModel;
+    if (is_model == (queues == Queues::kObjects)) {
+      paging_.queue(static_cast<DataType>(type)).SetWishes(view, std::span<const Wish>(begin, end));
+    }
+    begin = end;
+  }
+  std::sort(uploads_.begin(), uploads_.end(), [](const Upload& a, const Upload& b) { return a.priority > b.priority; });
+  for (Upload& upload : uploads_) list_.uploads.push_back(std::move(upload.pin));
+}
+
+}  // namespace belvedere

@@ -1,0 +1,59 @@
+// ListPages: a manager's view of the cache and the GPU, for one display list. Pins what it hands out into the list, and
+// gathers what the manager wants: wishes for the servers, uploads for the render thread.
+//
+// Threads: the manager's.
+#pragma once
+
+#include "managers/cut.h"
+#include "runtime/paging/paging.h"
+
+#include <unordered_map>
+#include <vector>
+
+namespace belvedere {
+
+class ListPages final : public PageAccess {
+ public:
+  // Pages are pinned into `list`. REQUIRES: the list is clear and outlives this.
+  ListPages(Paging& paging, DataType terrain, DisplayList& list) : paging_(paging), terrain_(terrain), list_(list) {}
+
+  const TerrainPage* Terrain(Quadcode node) override;
+  std::optional<int> Slot(const PageKey& key) override;
+  bool Want(const PageKey& key, float priority) override;
+
+  // The page, pinned in the list; nullptr when it is not in memory.
+  const Page* Find(const PageKey& key) { return Look(key).page; }
+
+  // Which of a view's queues a manager speaks for.
+  enum class Queues { kTerrain, kObjects };
+  // Sends the wishes of that view to those queues and sorts the list's uploads, most wanted first.
+  void Finish(ViewId view, Queues queues);
+  size_t pages_waiting() const { return wishes_.size() + uploads_.size(); }
+
+ private:
+  struct KeyHash {
+    size_t operator()(const PageKey& key) const noexcept {
+      return std::hash<Quadcode>()(key.node) + key.type * 0x9E37u;
+    }
+  };
+  struct Known {
+    const Page* page = nullptr;  // nullptr: not in memory
+    int slot = -1;               // pinned in the list
+    bool wanted = false;
+  };
+  Known& Look(const PageKey& key);
+
+  struct Upload {
+    float priority;
+    PagePin pin;
+  };
+
+  Paging& paging_;
+  const DataType terrain_;
+  DisplayList& list_;
+  std::unordered_map<PageKey, Known, KeyHash> known_;
+  std::vector<Wish> wishes_;
+  std::vector<Upload> uploads_;
+};
+
+}  // namespace belvedere

@@ -1,0 +1,124 @@
+#include "managers/terrain_manager.h"
+
+#include "managers/cut.h"
+#include "managers/list_pages.h"
+#include "managers/paced_thread.h"
+#include "managers/surface_mesh.h"
+#include "runtime/base/status.h"
+#include "runtime/earth/ellipsoid.h"
+#include "runtime/paging/terrain_height.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace belvedere {
+namespace {
+
+constexpr double kListsPerSecond = 20.0;
+constexpr double kPinnedShareOfBudget = 0.8;  // of the cache; over it, cuts stop growing
+constexpr double kRateSmoothing = 0.1;
+
+}  // namespace
+
+class TerrainManager::Worker {
+ public:
+  Worker(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, const Clock& clock)
+      : view_id_(view),
+        paging_(paging),
+        channel_(std::move(channel)),
+        clock_(clock),
+        terrain_(TerrainType(paging.layers)),
+        thread_("terrain manager", kListsPerSecond, [this] { Step(); }) {}
+
+  double scene_hz() const { return scene_hz_.load(); }
+
+ private:
+  static DataType TerrainType(const LayerTable& layers) {
+    const Layer* terrain = layers.FirstOf(PageKind::kTerrain);
+    BELVEDERE_CHECK(terrain != nullptr);
+    return terrain->type;
+  }
+
+  void Step() {
+    const std::shared_ptr<const ViewParameters> view = channel_->parameters.Get();
+    if (view->number == 0 || IsUpToDate(*view)) return;
+    const double now_s = clock_.NowSeconds();
+    DisplayList& list = channel_->terrain_lists.back();
+    list.Clear();
+    Build(*view, now_s, list);
+    list.statistics.build_ms = (clock_.NowSeconds() - now_s) * 1e3;
+    settled_number_ = list.statistics.settled ? view->number : 0;
+    channel_->terrain_lists.Publish();
+    if (last_list_s_ > 0 && now_s > last_list_s_) {
+      const double rate = 1.0 / (now_s - last_list_s_);
+      scene_hz_ = scene_hz_ + kRateSmoothing * (rate - scene_hz_);
+    }
+    last_list_s_ = now_s;
+  }
+
+  // Nothing would change: the same settled view, with an eye that stands still.
+  bool IsUpToDate(const ViewParameters& view) const {
+    if (view.frozen && number_ > 0) return true;
+    return view.number == settled_number_ && view.eye_velocity_mps == glm::dvec3(0);
+  }
+
+  void Build(const ViewParameters& view, double now_s, DisplayList& list) {
+    const Geodetic eye = ToGeodetic(view.EyeAt(now_s));
+    const std::optional<GroundPoint> ground = GroundUnder(paging_, terrain_, eye.latitude_deg, eye.longitude_deg);
+    list.statistics.height_above_ground_m = std::max(0.0, eye.height_m - (ground ? ground->height_m : 0.0));
+    const ViewMatrices matrices = MatricesOf(view, now_s, list.statistics.height_above_ground_m);
+
+    ListPages pages(paging_, terrain_, list);
+    CutLimits limits;
+    if (static_cast<double>(paging_.cache.PinnedBytes()) >
+        kPinnedShareOfBudget * static_cast<double>(paging_.cache.budget_bytes())) {
+      limits.max_nodes = std::min(limits.max_nodes, last_nodes_);
+    }
+    const Cut cut = SelectCut(view, matrices, paging_.layers, terrain_, limits, pages);
+    const MeshStatistics mesh = BuildSurface(cut.nodes, SightOf(view, matrices.eye_ecef), view.error_px, list);
+    last_nodes_ = static_cast<int>(cut.nodes.size());
+    list.records = cut.records;
+    list.volumes = cut.volumes;
+    list.view = view_id_;
+    list.view_number = view.number;
+    list.number = ++number_;
+    list.time_s = now_s;
+    pages.Finish(view_id_, ListPages::Queues::kTerrain);
+
+    DisplayList::Statistics& statistics = list.statistics;
+    statistics.triangles = mesh.triangles;
+    statistics.nodes = static_cast<uint32_t>(cut.nodes.size());
+    statistics.achieved_error_px = mesh.achieved_error_px + cut.left_over_error_px;
+    statistics.pages_waiting = static_cast<uint32_t>(pages.pages_waiting());
+    statistics.behind = cut.behind;
+    statistics.settled = !cut.waiting && pages.pages_waiting() == 0 && !cut.nodes.empty();
+  }
+
+  const ViewId view_id_;
+  Paging& paging_;
+  const std::shared_ptr<ViewChannel> channel_;
+  const Clock& clock_;
+  const DataType terrain_;
+  uint64_t number_ = 0;
+  uint64_t settled_number_ = 0;
+  int last_nodes_ = 0;
+  double last_list_s_ = 0;
+  std::atomic<double> scene_hz_{0};
+  PacedThread thread_;  // last: it stops before the members above go
+};
+
+TerrainManager::TerrainManager(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, const Clock& clock)
+    : worker_(std::make_unique<Worker>(view, paging, std::move(channel), clock)), view_(view), paging_(paging) {}
+
+TerrainManager::~TerrainManager() {
+  worker_.reset();
+  for (const Layer& layer : paging_.layers.layers()) {
+    if (layer.kind != PageKind::kModel) paging_.queue(layer.type).SetWishes(view_, {});
+  }
+}
+
+double TerrainManager::scene_hz() const {
+  return worker_->scene_hz();
+}
+
+}  // namespace belvedere

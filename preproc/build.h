@@ -1,0 +1,45 @@
+// Build: from a spec to a dataset.
+//
+// Pages are made depth first, children before their parent, by all workers at once; each page is computed from the
+// sources alone, so no page waits for a neighbour. A source that turns out to be unreadable, or that covers nothing, is
+// left out and the build starts over without it, so that a dataset never holds half a source.
+//
+// Threads: blocks the caller; uses `jobs` workers and one writer.
+#pragma once
+
+#include "preproc/spec.h"
+#include "runtime/base/clock.h"
+#include "runtime/base/status.h"
+#include "runtime/paging/dataset.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace belvedere {
+
+struct SourceRemark {
+  std::string source;  // its path as the spec wrote it
+  std::string reason;
+};
+
+struct BuildOptions {
+  std::string out;
+  int jobs = 0;                            // 0: as many as the machine has cores
+  size_t cache_bytes = size_t{384} << 20;  // of source pixels
+  bool show_progress = true;
+};
+
+struct BuildReport {
+  double seconds = 0;
+  int64_t pages = 0;
+  int64_t bytes = 0;       // of the store on disk
+  int64_t bytes_read = 0;  // of source pixels, unpacked
+  std::vector<LayerRecord> layers;
+  std::vector<SourceRemark> skipped, warnings;
+};
+
+Result<BuildReport> Build(const BuildSpec& spec, const BuildOptions& options, const Clock& clock);
+
+}  // namespace belvedere

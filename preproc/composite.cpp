@@ -1,0 +1,146 @@
+#include "preproc/composite.h"
+
+#include "runtime/earth/ellipsoid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace belvedere {
+namespace {
+
+// Heights of a datum are not to be trusted beyond what 32-bit millimetres hold.
+constexpr double kLargestHeight_m = 2.0e6;
+
+// Heights of coarse levels are rounded to a power of two of millimetres that tilts no triangle by more than 20
+// microradians: most of what a page would otherwise store is rounding noise. 1 from level 10 on.
+int32_t Quantum_mm(Quadcode node) {
+  constexpr double kSteepest = 2e-5;
+  const double spacing_mm = node.SizeDegrees() / kCells * kRadiansPerDegree * kEquatorialRadius_m * 1000.0;
+  return int32_t{1} << std::max(0, static_cast<int>(std::floor(std::log2(spacing_mm * kSteepest))));
+}
+
+int32_t Millimetres(double height_m, int32_t quantum_mm) {
+  const double height_mm = std::clamp(height_m, -kLargestHeight_m, kLargestHeight_m) * 1000.0;
+  return quantum_mm * static_cast<int32_t>(std::lround(height_mm / quantum_mm));
+}
+
+uint8_t Byte(float value) {
+  return static_cast<uint8_t>(std::clamp(std::lround(value), 0L, 255L));
+}
+
+// What is still to be covered, position by position.
+struct Remaining {
+  explicit Remaining(size_t count) : shares(count, 1.0f) {}
+  // Takes its part for a source of that weight.
+  float Take(size_t i, float weight) {
+    const float part = shares[i] * weight;
+    shares[i] -= part;
+    return part;
+  }
+  bool Any() const {
+    return std::any_of(shares.begin(), shares.end(), [](float share) { return share > 0; });
+  }
+  std::vector<float> shares;
+};
+
+}  // namespace
+
+Composite::Composite(LayerKind kind, const std::vector<RasterSource*>& sources, const Geoid& geoid)
+    : kind_(kind), geoid_(geoid) {
+  for (auto source = sources.rbegin(); source != sources.rend(); ++source) samplers_.emplace_back(**source, kind);
+}
+
+bool Composite::MayCover(const SourceSampler& sampler, const LatticeRows& lattice) const {
+  const auto [south, north] = std::minmax_element(lattice.latitudes_deg.begin(), lattice.latitudes_deg.end());
+  const GeoBox& box = sampler.extent();
+  if (*north < box.south_deg || *south > box.north_deg) return false;
+  return std::any_of(lattice.longitudes_deg.begin(), lattice.longitudes_deg.end(), [&](double longitude_deg) {
+    const double turns = std::ceil((box.west_deg - longitude_deg) / 360.0);
+    return longitude_deg + 360.0 * turns <= box.east_deg;
+  });
+}
+
+std::vector<double> Composite::HeightsAt(const LatticeRows& lattice, double spacing_deg) {
+  const size_t columns = lattice.longitudes_deg.size();
+  const size_t count = columns * lattice.latitudes_deg.size();
+  std::vector<double> undulation(count);
+  for (size_t i = 0; i < count; ++i) {
+    undulation[i] = geoid_.Height(lattice.latitudes_deg[i / columns], lattice.longitudes_deg[i % columns]);
+  }
+  std::vector<double> heights(count, 0.0);
+  Remaining remaining(count);
+  for (SourceSampler& sampler : samplers_) {
+    if (!MayCover(sampler, lattice)) continue;
+    const Samples<double> samples = sampler.Sample<double>(lattice, spacing_deg);
+    const SourceSpec& spec = sampler.source().spec();
+    bool used = false;
+    for (size_t i = 0; i < count; ++i) {
+      if (samples.weights[i] <= 0) continue;
+      const double datum_m = spec.datum == VerticalDatum::kEgm96 ? undulation[i] : spec.datum_m;
+      const float part = remaining.Take(i, samples.weights[i]);
+      if (part > 0) heights[i] += static_cast<double>(part) * (samples.values[i] + datum_m);
+      used = true;
+    }
+    if (used) sampler.source().SetUsed();
+    if (!remaining.Any()) return heights;
+  }
+  for (size_t i = 0; i < count; ++i) heights[i] += static_cast<double>(remaining.shares[i]) * undulation[i];
+  return heights;
+}
+
+std::vector<int32_t> Composite::Heights_mm(Quadcode node) {
+  const double spacing_deg = node.SizeDegrees() / kCells;
+  const int32_t quantum_mm = Quantum_mm(node);
+  std::vector<int32_t> heights_mm(static_cast<size_t>(kElevationSide) * static_cast<size_t>(kElevationSide));
+  for (const LatticeRows& lattice : PostLattice(node)) {
+    const std::vector<double> heights = HeightsAt(lattice, spacing_deg);
+    const size_t columns = lattice.longitudes_deg.size();
+    for (size_t j = 0; j < lattice.rows.size(); ++j) {
+      int32_t* out = &heights_mm[static_cast<size_t>(lattice.rows[j] * kElevationSide)];
+      for (size_t i = 0; i < static_cast<size_t>(kElevationSide); ++i) {
+        out[i] = Millimetres(heights[j * columns + std::min(i, columns - 1)], quantum_mm);
+      }
+    }
+  }
+  return heights_mm;
+}
+
+std::vector<double> Composite::ProbeHeights(Quadcode node) {
+  return HeightsAt(ProbeLattice(node), node.SizeDegrees() / (2 * kCells));
+}
+
+std::vector<uint8_t> Composite::Texels(Quadcode node) {
+  const double spacing_deg = node.SizeDegrees() / kImageInner;
+  std::vector<uint8_t> texels(4 * static_cast<size_t>(kImageSide) * static_cast<size_t>(kImageSide), 0);
+  for (const LatticeRows& lattice : TexelLattice(node)) {
+    const size_t count = lattice.longitudes_deg.size() * lattice.latitudes_deg.size();
+    std::vector<float> colours(3 * count, 0.0f);
+    Remaining remaining(count);
+    for (SourceSampler& sampler : samplers_) {
+      if (!MayCover(sampler, lattice)) continue;
+      const Samples<float> samples = sampler.Sample<float>(lattice, spacing_deg);
+      bool used = false;
+      for (size_t i = 0; i < count; ++i) {
+        if (samples.weights[i] <= 0) continue;
+        const float part = remaining.Take(i, samples.weights[i]);
+        for (size_t c = 0; c < 3; ++c) colours[3 * i + c] += part * std::clamp(samples.values[3 * i + c], 0.0f, 255.0f);
+        used = true;
+      }
+      if (used) sampler.source().SetUsed();
+      if (!remaining.Any()) break;
+    }
+    for (size_t i = 0; i < count; ++i) {
+      const float alpha = 1.0f - remaining.shares[i];
+      const uint8_t alpha_byte = Byte(255.0f * alpha);
+      if (alpha_byte == 0) continue;
+      const auto row = static_cast<size_t>(lattice.rows[i / lattice.longitudes_deg.size()]);
+      uint8_t* out = &texels[4 * (row * static_cast<size_t>(kImageSide) + i % lattice.longitudes_deg.size())];
+      for (size_t c = 0; c < 3; ++c) out[c] = Byte(colours[3 * i + c] / alpha);
+      out[3] = alpha_byte;
+    }
+  }
+  return texels;
+}
+
+}  // namespace belvedere

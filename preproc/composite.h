@@ -1,0 +1,40 @@
+// Composite: pages made of a layer's sources, the best last, at the exact positions of their posts or texels.
+//
+// Heights: where no source has data there is mean sea level. Images: where no source has data a texel is transparent
+// black. A later source covers an earlier one where it has data; feathers and alpha blend the two.
+//
+// Threads: one Composite a thread.
+#pragma once
+
+#include "preproc/source_sampler.h"
+#include "runtime/earth/geoid.h"
+#include "runtime/paging/page.h"
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace belvedere {
+
+class Composite {
+ public:
+  // sources: best last. They and the geoid outlive the composite.
+  Composite(LayerKind kind, const std::vector<RasterSource*>& sources, const Geoid& geoid);
+
+  // Posts only; min, max and error are the caller's. REQUIRES: kind is elevation.
+  std::vector<int32_t> Heights_mm(Quadcode node);
+  // kImageSide^2 RGBA texels. REQUIRES: kind is imagery.
+  std::vector<uint8_t> Texels(Quadcode node);
+  // The height, in metres, that the sources have at the probes of a node, as if asked for by its children.
+  std::vector<double> ProbeHeights(Quadcode node);
+
+ private:
+  std::vector<double> HeightsAt(const LatticeRows& lattice, double spacing_deg);
+  bool MayCover(const SourceSampler& sampler, const LatticeRows& lattice) const;
+
+  const LayerKind kind_;
+  const Geoid& geoid_;
+  std::vector<SourceSampler> samplers_;  // best first
+};
+
+}  // namespace belvedere

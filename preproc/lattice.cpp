@@ -1,0 +1,98 @@
+#include "preproc/lattice.h"
+
+#include "runtime/paging/page.h"
+
+#include <utility>
+
+namespace belvedere {
+namespace {
+
+constexpr int64_t kTurn = int64_t{1} << 32;  // grid units of 360 degrees
+constexpr int64_t kPole = int64_t{1} << 31;  // grid units of latitude from pole to pole
+
+double LongitudeOfGrid(int64_t x) {
+  return GridPoint{static_cast<uint32_t>(x & (kTurn - 1)), 0}.longitude_deg();
+}
+double LatitudeOfGrid(int64_t y) {
+  return GridPoint{0, static_cast<uint32_t>(y)}.latitude_deg();
+}
+
+// Groups in order of the page's rows: those with latitude as it is, beyond a pole, and on a pole.
+struct Grouped {
+  LatticeRows plain, mirrored, pole;
+  std::vector<LatticeRows> Take() {
+    std::vector<LatticeRows> groups;
+    for (LatticeRows* group : {&plain, &mirrored, &pole}) {
+      if (!group->rows.empty()) groups.push_back(std::move(*group));
+    }
+    return groups;
+  }
+};
+
+void Append(LatticeRows& group, double latitude_deg, int row) {
+  group.latitudes_deg.push_back(latitude_deg);
+  group.rows.push_back(row);
+}
+
+}  // namespace
+
+std::vector<LatticeRows> PostLattice(Quadcode node) {
+  const GridPoint corner = node.SouthWest();
+  const int64_t spacing = node.PostSpacing();
+  Grouped groups;
+  for (int i = 0; i < kElevationSide; ++i) {
+    const int64_t x = int64_t{corner.x} + (i - kApron) * spacing;
+    groups.plain.longitudes_deg.push_back(LongitudeOfGrid(x));
+    groups.mirrored.longitudes_deg.push_back(LongitudeOfGrid(x + kTurn / 2));
+  }
+  groups.pole.longitudes_deg = {LongitudeOfGrid(0)};
+  for (int j = 0; j < kElevationSide; ++j) {
+    const int64_t y = int64_t{corner.y} + (j - kApron) * spacing;
+    if (y == 0 || y == kPole) {
+      Append(groups.pole, LatitudeOfGrid(y), j);
+    } else if (y < 0 || y > kPole) {
+      Append(groups.mirrored, LatitudeOfGrid(y < 0 ? -y : 2 * kPole - y), j);
+    } else {
+      Append(groups.plain, LatitudeOfGrid(y), j);
+    }
+  }
+  return groups.Take();
+}
+
+std::vector<LatticeRows> TexelLattice(Quadcode node) {
+  const int level = node.level();
+  const int64_t around = (int64_t{kTreeColumns} << level) * kImageInner;
+  const int64_t upright = (int64_t{kTreeRows} << level) * kImageInner;
+  const double degrees = node.SizeDegrees() / kImageInner;
+  const auto longitude = [&](int64_t texel) {
+    const int64_t wrapped = ((texel % around) + around) % around;
+    return (static_cast<double>(wrapped) + 0.5) * degrees - 180.0;
+  };
+  Grouped groups;
+  for (int i = 0; i < kImageSide; ++i) {
+    const int64_t texel = node.column() * kImageInner + i - kImageGutter;
+    groups.plain.longitudes_deg.push_back(longitude(texel));
+    groups.mirrored.longitudes_deg.push_back(longitude(texel + around / 2));
+  }
+  for (int j = 0; j < kImageSide; ++j) {
+    const int64_t texel = node.row() * kImageInner + j - kImageGutter;
+    const bool beyond = texel < 0 || texel >= upright;
+    const int64_t row = texel < 0 ? -1 - texel : texel >= upright ? 2 * upright - 1 - texel : texel;
+    Append(beyond ? groups.mirrored : groups.plain, (static_cast<double>(row) + 0.5) * degrees - 90.0, j);
+  }
+  return groups.Take();
+}
+
+LatticeRows ProbeLattice(Quadcode node) {
+  const GeoBox box = node.Box();
+  const double cell_deg = node.SizeDegrees() / kCells;
+  LatticeRows probes;
+  for (int cell = kProbeFirst; cell < kCells; cell += kProbeStep) {
+    probes.longitudes_deg.push_back(box.west_deg + (cell + 0.5) * cell_deg);
+    probes.latitudes_deg.push_back(box.south_deg + (cell + 0.5) * cell_deg);
+    probes.rows.push_back(cell);
+  }
+  return probes;
+}
+
+}  // namespace belvedere

@@ -1,0 +1,33 @@
+// Lattice: the positions of a page's posts or texels, so that a position has the same bits in every page that holds it.
+//
+// Positions are computed from integers that number them round the Earth, not from a page's corner: neighbours, also
+// over 180 E and between trees, agree to the last bit. Rows that would lie beyond a pole are mirrored across it, half a
+// turn further; posts of the pole row itself are all one position. So a page is one to three groups of rows, each with
+// its own longitudes.
+//
+// Units: degrees; longitude [-180, 180), latitude [-90, 90].
+// Threads: pure functions.
+#pragma once
+
+#include "runtime/earth/quadcode.h"
+
+#include <vector>
+
+namespace belvedere {
+
+struct LatticeRows {
+  std::vector<double> longitudes_deg;  // as many as the page has columns; 1 for a pole's row
+  std::vector<double> latitudes_deg;
+  std::vector<int> rows;  // of the page, in which the latitudes go
+};
+
+// kElevationSide posts a side.
+std::vector<LatticeRows> PostLattice(Quadcode node);
+// kImageSide texels a side.
+std::vector<LatticeRows> TexelLattice(Quadcode node);
+// Centres of every 4th cell between posts, both ways: kCells / 4 a side.
+LatticeRows ProbeLattice(Quadcode node);
+inline constexpr int kProbeStep = 4;
+inline constexpr int kProbeFirst = 1;  // the first cell that is probed
+
+}  // namespace belvedere

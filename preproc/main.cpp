@@ -1,0 +1,87 @@
+// belvedere-build: sources to a dataset; what is in a dataset; whether it is whole.
+
+#include "preproc/build.h"
+#include "preproc/report.h"
+#include "preproc/spec.h"
+#include "runtime/base/clock.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <string>
+
+namespace {
+
+using belvedere::Dataset;
+
+int Fail(const std::string& message) {
+  fmt::print(stderr, "belvedere-build: {}\n", message);
+  return 1;
+}
+
+int RunBuild(const std::string& spec_path, const belvedere::BuildOptions& options, bool json) {
+  const auto spec = belvedere::LoadSpec(spec_path);
+  if (!spec.ok()) return Fail(spec.message());
+  const auto report = belvedere::Build(*spec, options, belvedere::Clock::System());
+  if (!report.ok()) return Fail(report.message());
+  fmt::print(stderr, "{}: {}\n", options.out, belvedere::BuildReportLine(*report));
+  if (json) fmt::print("{}\n", belvedere::BuildReportJson(*report));
+  return 0;
+}
+
+int RunInfo(const std::string& path, bool json) {
+  const auto dataset = Dataset::Open(path);
+  if (!dataset.ok()) return Fail(dataset.message());
+  if (json) {
+    fmt::print("{}\n", belvedere::DescribeDatasetJson(**dataset));
+  } else {
+    fmt::print("{}", belvedere::DescribeDataset(**dataset));
+  }
+  return 0;
+}
+
+int RunVerify(const std::string& path) {
+  const auto dataset = Dataset::Open(path);
+  if (!dataset.ok()) return Fail(dataset.message());
+  const belvedere::Verification found = belvedere::VerifyDataset(**dataset);
+  for (const std::string& problem : found.problems) fmt::print("{}\n", problem);
+  if (!found.problems.empty())
+    return Fail(
+        fmt::format("{}: {} of {} pages or rules are bad; build it again", path, found.problems.size(), found.pages));
+  fmt::print("{}: all {} pages are good\n", path, found.pages);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"belvedere-build: makes a dataset of Earth from sources"};
+  app.set_version_flag("--version", BELVEDERE_VERSION);
+  app.footer(
+      "belvedere-build SPEC.toml --out DATASET makes a dataset of the sources that the spec lists.\n"
+      "The progress goes to standard error, the report (--json) to standard output.");
+  std::string spec_path, dataset_path;
+  belvedere::BuildOptions options;
+  bool json = false;
+  app.add_option("SPEC", spec_path, "what to build: a TOML file of layers and their sources");
+  app.add_option("--out", options.out, "folder of the dataset; one that is there is replaced when the build succeeds");
+  app.add_option("--jobs", options.jobs, "workers (default: one for each core)")->check(CLI::Range(1, 1024));
+  app.add_flag("--json", json, "print a report as JSON");
+  CLI::App* info = app.add_subcommand("info", "layers, levels, extents, pages, bytes and sources of a dataset");
+  info->add_option("DATASET", dataset_path, "folder of the dataset")->required();
+  info->add_flag("--json", json, "print it as JSON");
+  CLI::App* verify = app.add_subcommand("verify", "read and check every page of a dataset");
+  verify->add_option("DATASET", dataset_path, "folder of the dataset")->required();
+  app.require_subcommand(0, 1);
+  try {
+    app.parse(argc, argv);
+    const bool building = !info->parsed() && !verify->parsed();
+    if (building && spec_path.empty()) throw CLI::RequiredError("SPEC");
+    if (building && options.out.empty()) throw CLI::RequiredError("--out");
+  } catch (const CLI::ParseError& problem) {
+    return app.exit(problem) == 0 ? 0 : 2;
+  }
+  if (info->parsed()) return RunInfo(dataset_path, json);
+  if (verify->parsed()) return RunVerify(dataset_path);
+  return RunBuild(spec_path, options, json);
+}

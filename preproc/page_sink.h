@@ -1,0 +1,52 @@
+// PageSink: the one thread that writes pages into the dataset, behind a bounded queue.
+//
+// Threads: Put, any; it waits while the queue is full. Close, one, after the last Put.
+#pragma once
+
+#include "runtime/base/mutex.h"
+#include "runtime/base/status.h"
+#include "runtime/paging/dataset_writer.h"
+
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <thread>
+#include <vector>
+
+namespace belvedere {
+
+class PageSink {
+ public:
+  explicit PageSink(DatasetWriter& writer);
+  ~PageSink();
+
+  void Put(int layer, Quadcode node, std::vector<uint8_t> value) EXCLUDES_LOCK(mutex_);
+  // Waits until everything is written.
+  Status Close() EXCLUDES_LOCK(mutex_);
+  // Something could not be written: nothing more will be.
+  bool failed() const { return failed_.load(std::memory_order_relaxed); }
+  int64_t pages() const { return pages_.load(std::memory_order_relaxed); }
+  int64_t bytes() const { return bytes_.load(std::memory_order_relaxed); }
+
+ private:
+  struct Item {
+    int layer = 0;
+    Quadcode node;
+    std::vector<uint8_t> value;
+  };
+  void Run() EXCLUDES_LOCK(mutex_);
+  Status Write(const Item& item);
+
+  DatasetWriter& writer_;
+  int64_t uncommitted_bytes_ = 0;  // the writing thread's
+  std::atomic<bool> failed_{false};
+  std::atomic<int64_t> pages_{0}, bytes_{0};
+  Mutex mutex_;
+  CondVar changed_;
+  std::deque<Item> queue_ GUARDED_BY(mutex_);
+  bool closing_ GUARDED_BY(mutex_) = false;
+  Status status_ GUARDED_BY(mutex_);
+  std::thread thread_;  // last: starts when all else is there
+};
+
+}  // namespace belvedere

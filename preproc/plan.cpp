@@ -1,0 +1,52 @@
+#include "preproc/plan.h"
+
+#include "runtime/paging/page.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace belvedere {
+namespace {
+
+// Pixels that are a hair closer than posts do not ask for another level.
+constexpr double kSpacingSlack = 1.001;
+
+int64_t CountUnder(std::span<const PlannedSource> sources, Quadcode node) {
+  std::vector<PlannedSource> here;
+  const GeoBox box = node.Box();
+  std::copy_if(sources.begin(), sources.end(), std::back_inserter(here), [&](const PlannedSource& source) {
+    return source.finest_level > node.level() && Overlap(source.extent, box);
+  });
+  int64_t count = 1;
+  for (int which = 0; which < 4 && !here.empty(); ++which) count += CountUnder(here, node.Child(which));
+  return count;
+}
+
+}  // namespace
+
+int FinestLevel(double spacing_deg, LayerKind kind) {
+  double spacing = kTreeDegrees / (kind == LayerKind::kElevation ? kCells : kImageInner);
+  int level = 0;
+  while (level < kMaxLevel && spacing > spacing_deg * kSpacingSlack) {
+    spacing /= 2;
+    ++level;
+  }
+  return level;
+}
+
+int SourceLevel(std::span<const PlannedSource> sources, Quadcode node) {
+  int level = 0;
+  const GeoBox box = node.Box();
+  for (const PlannedSource& source : sources) {
+    if (source.finest_level > level && Overlap(source.extent, box)) level = source.finest_level;
+  }
+  return level;
+}
+
+int64_t CountNodes(std::span<const PlannedSource> sources) {
+  int64_t count = 0;
+  for (int tree = 0; tree < kTrees; ++tree) count += CountUnder(sources, Quadcode::Root(tree));
+  return count;
+}
+
+}  // namespace belvedere

@@ -1,0 +1,36 @@
+// Plan: which quadnodes a layer gets, from where its sources lie and how fine they are.
+//
+// Level 0 has all 32 quadnodes. A quadnode has children, all four, where some source that is finer than it overlaps it.
+// Elevation goes up to kRefineLevels further where the terrain is so rough that bilinear interpolation between a page's
+// posts strays from the source (build.cpp asks for that page by page).
+//
+// Threads: pure functions.
+#pragma once
+
+#include "preproc/georeference.h"
+#include "runtime/earth/quadcode.h"
+#include "runtime/paging/dataset.h"
+
+#include <cstdint>
+#include <span>
+
+namespace belvedere {
+
+inline constexpr int kRefineLevels = 2;
+// A page is refined where more than this share of its probes is further than the tolerance from the source.
+inline constexpr double kRefineTolerance_m = 2.5;
+inline constexpr double kRefineShare = 0.025;
+
+struct PlannedSource {
+  GeoBox extent;
+  int finest_level = 0;
+};
+
+// The coarsest level whose posts or texels are no further apart than a source's pixels.
+int FinestLevel(double spacing_deg, LayerKind kind);
+// The finest level that a source brings to the quadnode, which may be coarser than the quadnode; 0 where there is none.
+int SourceLevel(std::span<const PlannedSource> sources, Quadcode node);
+// Quadnodes of the layer, those of further refinement not counted.
+int64_t CountNodes(std::span<const PlannedSource> sources);
+
+}  // namespace belvedere

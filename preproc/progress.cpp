@@ -1,0 +1,59 @@
+#include "preproc/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <utility>
+
+namespace belvedere {
+
+Progress::Progress(int64_t planned_pages, const Clock& clock, std::function<int64_t()> written_bytes)
+    : planned_pages_(std::max<int64_t>(planned_pages, 1)),
+      clock_(clock),
+      written_bytes_(std::move(written_bytes)),
+      start_s_(clock.NowSeconds()),
+      thread_([this] { Run(); }) {}
+
+Progress::~Progress() {
+  {
+    const MutexLock lock(mutex_);
+    stop_ = true;
+    stopped_.NotifyAll();
+  }
+  thread_.join();
+}
+
+void Progress::Run() {
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const double period_s = terminal ? 0.25 : 3.0;
+  double next_s = start_s_ + period_s;
+  for (;;) {
+    {
+      const MutexLock lock(mutex_);
+      if (!stop_) stopped_.WaitFor(mutex_, std::chrono::milliseconds(100));
+      if (stop_) break;
+    }
+    if (clock_.NowSeconds() < next_s) continue;
+    next_s += period_s;
+    Print(terminal);
+  }
+  if (terminal) std::fputs("\r\033[K", stderr);
+}
+
+void Progress::Print(bool terminal) const {
+  const double elapsed_s = std::max(clock_.NowSeconds() - start_s_, 1e-3);
+  const int64_t done = done_.load(std::memory_order_relaxed);
+  const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(planned_pages_));
+  const int left_s = done > 0 ? static_cast<int>(elapsed_s * (1.0 - share) / share) : 0;
+  const std::string line =
+      fmt::format("{} of {} pages ({:.0f} %), {:.0f} pages/s, {:.1f} MB/s, {}:{:02} left", done, planned_pages_,
+                  100 * share, static_cast<double>(done) / elapsed_s,
+                  static_cast<double>(written_bytes_()) / 1e6 / elapsed_s, left_s / 60, left_s % 60);
+  fmt::print(stderr, "{}{}{}", terminal ? "\r\033[K" : "", line, terminal ? "" : "\n");
+  std::fflush(stderr);
+}
+
+}  // namespace belvedere

@@ -1,0 +1,202 @@
+#include "preproc/raster_source.h"
+
+#include "preproc/raster_reader.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace belvedere {
+namespace {
+
+constexpr size_t kBlockPixels = static_cast<size_t>(kBlockSide) * static_cast<size_t>(kBlockSide);
+constexpr int kDeepestPyramid = 24;
+
+Block EmptyBlock(LayerKind kind) {
+  Block block;
+  block.coverage.assign(kBlockPixels, 0);
+  if (kind == LayerKind::kElevation) block.heights.assign(kBlockPixels, 0.0f);
+  if (kind == LayerKind::kImagery) block.colours.assign(3 * kBlockPixels, 0);
+  return block;
+}
+
+// Column `from` of the window onwards becomes a block of its own.
+Block CutBlock(const Block& window, int window_width, int window_height, int from, LayerKind kind) {
+  Block block = EmptyBlock(kind);
+  const int width = std::min(kBlockSide, window_width - from);
+  for (int row = 0; row < std::min(kBlockSide, window_height); ++row) {
+    const auto in = static_cast<size_t>(row) * static_cast<size_t>(window_width) + static_cast<size_t>(from);
+    const auto out = static_cast<size_t>(row) * static_cast<size_t>(kBlockSide);
+    const auto count = static_cast<size_t>(width);
+    std::copy_n(&window.coverage[in], count, &block.coverage[out]);
+    if (kind == LayerKind::kElevation) std::copy_n(&window.heights[in], count, &block.heights[out]);
+    if (kind == LayerKind::kImagery) std::copy_n(&window.colours[3 * in], 3 * count, &block.colours[3 * out]);
+  }
+  return block;
+}
+
+// The mean of 2 x 2 pixels of a finer block, weighted by their coverage, as pixel `to`. count: how many of the four lie
+// on the source at all, so that the last, narrower pixel of an odd row is not taken for half empty.
+void ShrinkPixel(const Block& finer, const std::array<size_t, 4>& from, size_t count, Block& out, size_t to) {
+  float weight = 0, height = 0, colour[3] = {0, 0, 0};
+  for (const size_t at : from) {
+    const float w = finer.coverage[at];
+    weight += w;
+    if (!finer.heights.empty()) height += w * finer.heights[at];
+    for (size_t c = 0; c < 3 && !finer.colours.empty(); ++c)
+      colour[c] += w * static_cast<float>(finer.colours[3 * at + c]);
+  }
+  if (weight <= 0 || count == 0) return;
+  out.coverage[to] = static_cast<uint8_t>(std::clamp(std::lround(weight / static_cast<float>(count)), 1L, 255L));
+  if (!out.heights.empty()) out.heights[to] = height / weight;
+  for (size_t c = 0; c < 3 && !out.colours.empty(); ++c) {
+    out.colours[3 * to + c] = static_cast<uint8_t>(std::lround(colour[c] / weight));
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const Block> BlockCache::Find(uint64_t key) {
+  const MutexLock lock(mutex_);
+  const auto found = index_.find(key);
+  if (found == index_.end()) return nullptr;
+  entries_.splice(entries_.begin(), entries_, found->second);
+  return found->second->block;
+}
+
+void BlockCache::Insert(uint64_t key, std::shared_ptr<const Block> block) {
+  std::vector<std::shared_ptr<const Block>> evicted;  // freed after the lock is
+  const MutexLock lock(mutex_);
+  if (index_.contains(key)) return;
+  bytes_ += block->bytes();
+  entries_.push_front({key, std::move(block)});
+  index_[key] = entries_.begin();
+  while (bytes_ > budget_bytes_ && entries_.size() > 1) {
+    bytes_ -= entries_.back().block->bytes();
+    index_.erase(entries_.back().key);
+    evicted.push_back(std::move(entries_.back().block));
+    entries_.pop_back();
+  }
+}
+
+RasterSource::RasterSource(const SourceSpec& spec, LayerKind kind, int number, BlockCache& cache)
+    : spec_(spec), kind_(kind), number_(number), cache_(cache) {}
+RasterSource::~RasterSource() = default;
+
+Result<std::unique_ptr<RasterSource>> RasterSource::Open(const SourceSpec& spec, LayerKind kind, int number,
+                                                         int handles, BlockCache& cache) {
+  std::unique_ptr<RasterSource> source(new RasterSource(spec, kind, number, cache));
+  auto reader = RasterReader::Open(spec, kind, handles);
+  if (!reader.ok()) return reader.status();
+  source->reader_ = std::move(*reader);
+  auto georeference = Georeference::Make(source->reader_->dataset(), spec);
+  if (!georeference.ok()) return georeference.status();
+  source->georeference_ = std::move(*georeference);
+  source->width_ = source->reader_->width();
+  source->height_ = source->reader_->height();
+  const GeoBox& extent = source->georeference_->extent();
+  if (!(extent.south_deg < 90 && extent.north_deg > -90 && extent.east_deg - extent.west_deg < 361)) {
+    return Status::Error(
+        "it covers nothing of the Earth (west {}, south {}, east {}, north {}); correct its georeference or crs",
+        extent.west_deg, extent.south_deg, extent.east_deg, extent.north_deg);
+  }
+  source->pyramid_levels_ =
+      source->georeference_->wraps() ? std::countr_zero(static_cast<unsigned>(source->width_)) : kDeepestPyramid;
+  return source;
+}
+
+SourceRecord RasterSource::Record() const {
+  SourceRecord record;
+  record.path = spec_.written_path;
+  record.crs = georeference_->crs_name();
+  record.extent = georeference_->extent();
+  record.nodata = reader_->nodata();
+  if (kind_ == LayerKind::kElevation) {
+    record.datum = spec_.datum == VerticalDatum::kEgm96       ? "egm96"
+                   : spec_.datum == VerticalDatum::kEllipsoid ? "ellipsoid"
+                                                              : fmt::format("{}", spec_.datum_m);
+  }
+  return record;
+}
+
+const std::string& RasterSource::remark() const {
+  return reader_->remark();
+}
+
+uint64_t RasterSource::KeyOf(int pyramid_level, int column, int row) const {
+  return static_cast<uint64_t>(number_) << 48 | static_cast<uint64_t>(pyramid_level) << 42 |
+         static_cast<uint64_t>(column) << 21 | static_cast<uint64_t>(row);
+}
+
+std::shared_ptr<const Block> RasterSource::GetBlock(int pyramid_level, int column, int row) {
+  if (auto found = cache_.Find(KeyOf(pyramid_level, column, row))) return found;
+  if (pyramid_level == 0) return ReadFromFile(column, row);
+  auto block = Shrink(pyramid_level, column, row);
+  cache_.Insert(KeyOf(pyramid_level, column, row), block);
+  return block;
+}
+
+std::shared_ptr<const Block> RasterSource::ReadFromFile(int column, int row) {
+  const int from = reader_->row_by_row() ? 0 : column * kBlockSide;
+  const int window_width = reader_->row_by_row() ? width_ : std::min(kBlockSide, width_ - from);
+  const int window_height = std::min(kBlockSide, height_ - row * kBlockSide);
+  Block window;
+  int64_t bytes = 0;
+  if (Status status = reader_->Read(from, row * kBlockSide, window_width, window_height, window, bytes); !status.ok()) {
+    Fail(std::move(status));
+    return std::make_shared<Block>(EmptyBlock(kind_));
+  }
+  bytes_read_.fetch_add(bytes, std::memory_order_relaxed);
+  std::shared_ptr<const Block> wanted;
+  for (int at = 0; at < window_width; at += kBlockSide) {
+    auto block = std::make_shared<const Block>(CutBlock(window, window_width, window_height, at, kind_));
+    const int block_column = (from + at) / kBlockSide;
+    cache_.Insert(KeyOf(0, block_column, row), block);
+    if (block_column == column) wanted = std::move(block);
+  }
+  return wanted;
+}
+
+std::shared_ptr<const Block> RasterSource::Shrink(int pyramid_level, int column, int row) {
+  auto out = std::make_shared<Block>(EmptyBlock(kind_));
+  const int finer_width = width(pyramid_level - 1);
+  const int finer_height = height(pyramid_level - 1);
+  constexpr int kHalf = kBlockSide / 2;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    const int finer_column = 2 * column + quarter % 2;
+    const int finer_row = 2 * row + quarter / 2;
+    if (finer_column * kBlockSide >= finer_width || finer_row * kBlockSide >= finer_height) continue;
+    const auto finer = GetBlock(pyramid_level - 1, finer_column, finer_row);
+    for (int y = 0; y < kHalf; ++y) {
+      for (int x = 0; x < kHalf; ++x) {
+        const int columns = std::clamp(finer_width - (finer_column * kBlockSide + 2 * x), 0, 2);
+        const int rows = std::clamp(finer_height - (finer_row * kBlockSide + 2 * y), 0, 2);
+        const auto at = static_cast<size_t>(2 * y * kBlockSide + 2 * x);
+        const auto to = static_cast<size_t>((quarter / 2 * kHalf + y) * kBlockSide + quarter % 2 * kHalf + x);
+        ShrinkPixel(*finer, {at, at + 1, at + kBlockSide, at + kBlockSide + 1}, static_cast<size_t>(columns * rows),
+                    *out, to);
+      }
+    }
+  }
+  return out;
+}
+
+bool RasterSource::HasData() {
+  int level = 0;
+  while (width(level) > kBlockSide || height(level) > kBlockSide) ++level;
+  const auto block = GetBlock(level, 0, 0);
+  return std::any_of(block->coverage.begin(), block->coverage.end(), [](uint8_t coverage) { return coverage > 0; });
+}
+
+Status RasterSource::failure() const {
+  const MutexLock lock(failure_mutex_);
+  return failure_;
+}
+
+void RasterSource::Fail(Status status) {
+  const MutexLock lock(failure_mutex_);
+  if (failure_.ok()) failure_ = std::move(status);
+}
+
+}  // namespace belvedere

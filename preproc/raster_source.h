@@ -1,0 +1,109 @@
+// RasterSource: one opened source and its pixels, in blocks of a pyramid that is made as it is needed.
+//
+// Level 0 of the pyramid is the source itself, each level above it half the side: the coverage-weighted mean of 2 x 2
+// pixels, so that nothing aliases when a source is shrunk a lot. A pixel's coverage is 0 where it is nodata, masked,
+// transparent, NaN or no height on Earth, 255 where it is whole. Blocks are cached within a byte budget that all
+// sources share; reading needs as many GDAL handles as there are threads inside, no more.
+//
+// Units: elevation in the source's metres (unit, scale and offset applied, datum not); imagery 8-bit RGB.
+// Threads: all methods, any thread.
+#pragma once
+
+#include "preproc/georeference.h"
+#include "preproc/spec.h"
+#include "runtime/base/mutex.h"
+#include "runtime/base/status.h"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <list>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace belvedere {
+
+inline constexpr int kBlockSide = 256;
+
+// Pixels row by row from the source's first line; those outside the source have coverage 0.
+struct Block {
+  std::vector<float> heights;     // elevation
+  std::vector<uint8_t> colours;   // imagery, 3 a pixel
+  std::vector<uint8_t> coverage;  // kBlockSide^2
+  size_t bytes() const { return heights.size() * sizeof(float) + colours.size() + coverage.size(); }
+};
+
+// The blocks of all sources, least recently used first out.
+class BlockCache {
+ public:
+  explicit BlockCache(size_t budget_bytes) : budget_bytes_(budget_bytes) {}
+  std::shared_ptr<const Block> Find(uint64_t key) EXCLUDES_LOCK(mutex_);
+  void Insert(uint64_t key, std::shared_ptr<const Block> block) EXCLUDES_LOCK(mutex_);
+
+ private:
+  struct Entry {
+    uint64_t key;
+    std::shared_ptr<const Block> block;
+  };
+  const size_t budget_bytes_;
+  Mutex mutex_;
+  std::list<Entry> entries_ GUARDED_BY(mutex_);  // most recently used first
+  std::unordered_map<uint64_t, std::list<Entry>::iterator> index_ GUARDED_BY(mutex_);
+  size_t bytes_ GUARDED_BY(mutex_) = 0;
+};
+
+class RasterReader;  // the GDAL side
+
+class RasterSource {
+ public:
+  // number is the source's own among those that share the cache, under 2^16. Fails with the reason alone.
+  static Result<std::unique_ptr<RasterSource>> Open(const SourceSpec& spec, LayerKind kind, int number, int handles,
+                                                    BlockCache& cache);
+  ~RasterSource();
+
+  const SourceSpec& spec() const { return spec_; }
+  SourceRecord Record() const;
+  const Georeference& georeference() const { return *georeference_; }
+  int width(int pyramid_level) const { return ShrunkSide(width_, pyramid_level); }
+  int height(int pyramid_level) const { return ShrunkSide(height_, pyramid_level); }
+  // Levels under which a source that goes round the Earth still closes on itself.
+  int pyramid_levels() const { return pyramid_levels_; }
+  std::shared_ptr<const Block> GetBlock(int pyramid_level, int column, int row);
+
+  // What could not be read, if anything: the source is then to be left out.
+  Status failure() const EXCLUDES_LOCK(failure_mutex_);
+  // What was done to the pixels that the user may not expect; may be empty.
+  const std::string& remark() const;
+  // Whether any pixel is valid; reads the whole source.
+  bool HasData();
+  bool used() const { return used_.load(std::memory_order_relaxed); }
+  void SetUsed() { used_.store(true, std::memory_order_relaxed); }
+  int64_t bytes_read() const { return bytes_read_.load(std::memory_order_relaxed); }
+
+ private:
+  RasterSource(const SourceSpec& spec, LayerKind kind, int number, BlockCache& cache);
+  static int ShrunkSide(int side, int level) {
+    return static_cast<int>((int64_t{side} + (int64_t{1} << level) - 1) >> level);
+  }
+  uint64_t KeyOf(int pyramid_level, int column, int row) const;
+  std::shared_ptr<const Block> ReadFromFile(int column, int row);
+  std::shared_ptr<const Block> Shrink(int pyramid_level, int column, int row);
+  void Fail(Status status) EXCLUDES_LOCK(failure_mutex_);
+
+  const SourceSpec spec_;
+  const LayerKind kind_;
+  const int number_;
+  BlockCache& cache_;
+  std::unique_ptr<RasterReader> reader_;
+  std::unique_ptr<Georeference> georeference_;
+  int width_ = 0, height_ = 0;
+  int pyramid_levels_ = 0;
+  std::atomic<bool> used_{false};
+  std::atomic<int64_t> bytes_read_{0};
+  mutable Mutex failure_mutex_;
+  Status failure_ GUARDED_BY(failure_mutex_);
+};
+
+}  // namespace belvedere

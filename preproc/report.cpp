@@ -1,0 +1,163 @@
+#include "preproc/report.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace belvedere {
+namespace {
+
+using nlohmann::json;
+
+json RemarksJson(const std::vector<SourceRemark>& remarks) {
+  json out = json::array();
+  for (const auto& remark : remarks) out.push_back({{"source", remark.source}, {"reason", remark.reason}});
+  return out;
+}
+
+json SourceJson(const SourceRecord& source) {
+  json out = {{"path", source.path},
+              {"crs", source.crs},
+              {"finest_level", source.finest_level},
+              {"extent_deg",
+               {source.extent.west_deg, source.extent.south_deg, source.extent.east_deg, source.extent.north_deg}}};
+  if (source.nodata) out["nodata"] = *source.nodata;
+  if (!source.datum.empty()) out["datum"] = source.datum;
+  return out;
+}
+
+json LayerJson(const LayerRecord& layer) {
+  return {{"name", layer.name},
+          {"kind", LayerKindName(layer.kind)},
+          {"levels", layer.max_level + 1},
+          {"pages", layer.pages}};
+}
+
+// Posts on the east and north border are those of the neighbours there, where these exist.
+void CompareBorders(const Dataset& dataset, int layer, Quadcode node, const ElevationPage& page, Verification& out) {
+  const int level = node.level();
+  const int64_t rows = int64_t{kTreeRows} << level;
+  const auto compare = [&](int64_t column, int64_t row, bool east) {
+    if (row >= rows) return;
+    const Quadcode neighbour = Quadcode::FromColumnRow(level, column, row);
+    if (!dataset.Exists(layer, neighbour)) return;
+    const auto other = dataset.ReadElevation(layer, neighbour);
+    if (!other.ok()) return;  // reported where it is read for itself
+    for (int i = 0; i < kPosts; ++i) {
+      const int32_t own = east ? page.at(kCells, i) : page.at(i, kCells);
+      const int32_t theirs = east ? (*other)->at(0, i) : (*other)->at(i, 0);
+      if (own == theirs) continue;
+      out.problems.push_back(fmt::format("layer {}: quadnodes {} and {} differ on the border they share",
+                                         dataset.layers()[static_cast<size_t>(layer)].name, node.ToString(),
+                                         neighbour.ToString()));
+      return;
+    }
+  };
+  compare(node.column() + 1, node.row(), true);
+  compare(node.column(), node.row() + 1, false);
+}
+
+void VerifyNode(const Dataset& dataset, int layer, Quadcode node, Verification& out) {
+  const LayerRecord& record = dataset.layers()[static_cast<size_t>(layer)];
+  ++out.pages;
+  if (!node.is_root()) {
+    if (!dataset.Exists(layer, node.Parent())) {
+      out.problems.push_back(fmt::format("layer {}: quadnode {} has no parent", record.name, node.ToString()));
+    }
+    for (int which = 0; which < 4; ++which) {
+      if (dataset.Exists(layer, node.Parent().Child(which))) continue;
+      out.problems.push_back(fmt::format("layer {}: quadnode {} lacks a sibling", record.name, node.ToString()));
+      break;
+    }
+  }
+  if (record.kind == LayerKind::kImagery) {
+    if (const auto page = dataset.ReadImage(layer, node); !page.ok()) out.problems.push_back(page.message());
+    return;
+  }
+  const auto page = dataset.ReadElevation(layer, node);
+  if (!page.ok()) {
+    out.problems.push_back(page.message());
+    return;
+  }
+  CompareBorders(dataset, layer, node, **page, out);
+}
+
+}  // namespace
+
+std::string BuildReportJson(const BuildReport& report) {
+  json layers = json::array();
+  for (const auto& layer : report.layers) layers.push_back(LayerJson(layer));
+  const json out = {{"seconds", report.seconds},
+                    {"pages", report.pages},
+                    {"bytes", report.bytes},
+                    {"bytes_read", report.bytes_read},
+                    {"layers", layers},
+                    {"skipped", RemarksJson(report.skipped)},
+                    {"warnings", RemarksJson(report.warnings)}};
+  return out.dump(2);
+}
+
+std::string BuildReportLine(const BuildReport& report) {
+  const double seconds = std::max(report.seconds, 1e-3);
+  return fmt::format(
+      "{} pages, {:.1f} MB in {:.1f} s: {:.0f} pages/s, {:.1f} MB/s written, {:.1f} MB/s of source pixels",
+      report.pages, static_cast<double>(report.bytes) / 1e6, report.seconds,
+      static_cast<double>(report.pages) / seconds, static_cast<double>(report.bytes) / 1e6 / seconds,
+      static_cast<double>(report.bytes_read) / 1e6 / seconds);
+}
+
+std::string DescribeDataset(const Dataset& dataset) {
+  std::string text = fmt::format("{}: dataset of version {}, built {}, {:.1f} MB\n", dataset.path(), kDatasetVersion,
+                                 dataset.build_time(), static_cast<double>(dataset.bytes()) / 1e6);
+  for (const LayerRecord& layer : dataset.layers()) {
+    text += fmt::format("layer {} ({}): {} pages, {:.1f} MB, levels 0 to {}\n", layer.name, LayerKindName(layer.kind),
+                        layer.pages, static_cast<double>(layer.bytes) / 1e6, layer.max_level);
+    if (!layer.vertical_reference.empty()) text += fmt::format("  heights: {}\n", layer.vertical_reference);
+    text += "  pages by level:";
+    for (const int64_t pages : layer.pages_per_level) text += fmt::format(" {}", pages);
+    text += "\n";
+    for (const SourceRecord& source : layer.sources) {
+      text += fmt::format("  source {}: {}, level {}, west {:.6g} south {:.6g} east {:.6g} north {:.6g}\n", source.path,
+                          source.crs, source.finest_level, source.extent.west_deg, source.extent.south_deg,
+                          source.extent.east_deg, source.extent.north_deg);
+    }
+  }
+  return text;
+}
+
+std::string DescribeDatasetJson(const Dataset& dataset) {
+  json layers = json::array();
+  int64_t pages = 0;
+  for (const LayerRecord& layer : dataset.layers()) {
+    json entry = LayerJson(layer);
+    entry["max_level"] = layer.max_level;
+    entry["pages_per_level"] = layer.pages_per_level;
+    entry["bytes"] = layer.bytes;
+    if (!layer.vertical_reference.empty()) entry["vertical_reference"] = layer.vertical_reference;
+    entry["sources"] = json::array();
+    for (const auto& source : layer.sources) entry["sources"].push_back(SourceJson(source));
+    pages += layer.pages;
+    layers.push_back(std::move(entry));
+  }
+  const json out = {{"version", kDatasetVersion},
+                    {"build_time", dataset.build_time()},
+                    {"bytes", dataset.bytes()},
+                    {"pages", pages},
+                    {"layers", layers}};
+  return out.dump(2);
+}
+
+Verification VerifyDataset(const Dataset& dataset) {
+  Verification out;
+  for (size_t layer = 0; layer < dataset.layers().size(); ++layer) {
+    const int number = static_cast<int>(layer);
+    for (int tree = 0; tree < kTrees; ++tree) {
+      if (dataset.Exists(number, Quadcode::Root(tree))) continue;
+      out.problems.push_back(fmt::format("layer {}: quadtree {} has no root", dataset.layers()[layer].name, tree));
+    }
+    for (const uint64_t word : dataset.Nodes(number)) VerifyNode(dataset, number, *Quadcode::FromWord(word), out);
+  }
+  return out;
+}
+
+}  // namespace belvedere

@@ -1,0 +1,29 @@
+// Report: what a build or a dataset is, for a person or as JSON.
+//
+// Threads: pure functions, but for VerifyDataset, which reads every page.
+#pragma once
+
+#include "preproc/build.h"
+#include "runtime/paging/dataset.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace belvedere {
+
+std::string BuildReportJson(const BuildReport& report);
+std::string BuildReportLine(const BuildReport& report);
+
+std::string DescribeDataset(const Dataset& dataset);
+std::string DescribeDatasetJson(const Dataset& dataset);
+
+struct Verification {
+  int64_t pages = 0;
+  std::vector<std::string> problems;  // one line each
+};
+// Reads and checks every page; that siblings exist together, and that level 0 is whole; and that posts which neighbours
+// share are the same.
+Verification VerifyDataset(const Dataset& dataset);
+
+}  // namespace belvedere

@@ -1,0 +1,116 @@
+#include "preproc/resample.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace belvedere {
+namespace {
+
+double Weight(double distance, Kernel kernel) {
+  const double d = std::abs(distance);
+  if (kernel == Kernel::kTent) return std::max(0.0, 1.0 - d);
+  if (d < 1) return 1.0 + d * d * (1.5 * d - 2.5);
+  if (d < 2) return 2.0 + d * (-4.0 + d * (2.5 - 0.5 * d));
+  return 0;
+}
+
+void FillTaps(AxisTaps& taps, size_t i, double position, double shrink, Kernel kernel) {
+  const double radius = KernelRadius(shrink, kernel);
+  const double widened = std::max(1.0, shrink);
+  const double centre = position - 0.5;
+  const auto first = static_cast<int>(std::floor(centre - radius)) + 1;
+  const auto last = static_cast<int>(std::ceil(centre + radius)) - 1;
+  taps.first[i] = first;
+  taps.count[i] = last - first + 1;
+  double sum = 0;
+  double* weights = &taps.weights[i * taps.stride];
+  for (int j = first; j <= last; ++j) sum += weights[j - first] = Weight((j - centre) / widened, kernel);
+  for (int j = first; j <= last; ++j) weights[j - first] /= sum;
+}
+
+}  // namespace
+
+double KernelRadius(double shrink, Kernel kernel) {
+  return (kernel == Kernel::kTent ? 1.0 : 2.0) * std::max(1.0, shrink);
+}
+
+AxisTaps MakeTaps(std::span<const double> positions, double shrink, Kernel kernel, int period) {
+  AxisTaps taps;
+  taps.first.assign(positions.size(), 0);
+  taps.count.assign(positions.size(), 0);
+  taps.stride = static_cast<size_t>(2 * std::ceil(KernelRadius(shrink, kernel))) + 1;
+  taps.weights.assign(positions.size() * taps.stride, 0.0);
+  bool any = false;
+  int highest = 0, before = 0;
+  for (size_t i = 0; i < positions.size(); ++i) {
+    if (!std::isfinite(positions[i])) continue;
+    FillTaps(taps, i, positions[i], shrink, kernel);
+    int& first = taps.first[i];
+    if (any && period > 0) {
+      first += period * static_cast<int>(std::lround(static_cast<double>(before - first) / period));
+    }
+    before = first;
+    taps.lowest = any ? std::min(taps.lowest, first) : first;
+    highest = any ? std::max(highest, first + taps.count[i]) : first + taps.count[i];
+    any = true;
+  }
+  taps.length = any ? highest - taps.lowest : 0;
+  return taps;
+}
+
+template <typename Number>
+std::vector<Number> ResampleGrid(const PixelWindow& window, const AxisTaps& x, const AxisTaps& y) {
+  const size_t columns = x.first.size();
+  const size_t size = window.channels + 1;
+  const size_t line = columns * size;
+  // Along the rows first, those that some position needs.
+  std::vector<Number> narrowed(static_cast<size_t>(y.length) * line);
+  for (int row = 0; row < y.length; ++row) {
+    const auto in_row = static_cast<size_t>(y.lowest + row - window.y) * static_cast<size_t>(window.width);
+    for (size_t i = 0; i < columns; ++i) {
+      Number* out = &narrowed[static_cast<size_t>(row) * line + i * size];
+      const float* in = &window.pixels[(in_row + static_cast<size_t>(std::max(0, x.first[i] - window.x))) * size];
+      for (int tap = 0; tap < x.count[i]; ++tap, in += size) {
+        const auto weight = static_cast<Number>(x.weights[i * x.stride + static_cast<size_t>(tap)]);
+        for (size_t c = 0; c < size; ++c) out[c] += weight * static_cast<Number>(in[c]);
+      }
+    }
+  }
+  std::vector<Number> result(y.first.size() * line);
+  for (size_t j = 0; j < y.first.size(); ++j) {
+    Number* out = &result[j * line];
+    for (int tap = 0; tap < y.count[j]; ++tap) {
+      const auto weight = static_cast<Number>(y.weights[j * y.stride + static_cast<size_t>(tap)]);
+      const Number* in = &narrowed[static_cast<size_t>(y.first[j] + tap - y.lowest) * line];
+      for (size_t i = 0; i < line; ++i) out[i] += weight * in[i];
+    }
+  }
+  return result;
+}
+
+template <typename Number>
+std::vector<Number> ResamplePoints(const PixelWindow& window, const AxisTaps& x, const AxisTaps& y) {
+  const size_t size = window.channels + 1;
+  std::vector<Number> result(x.first.size() * size);
+  for (size_t i = 0; i < x.first.size(); ++i) {
+    Number* out = &result[i * size];
+    if (x.count[i] == 0) continue;
+    for (int j = 0; j < y.count[i]; ++j) {
+      const auto row = static_cast<size_t>(y.first[i] + j - window.y) * static_cast<size_t>(window.width);
+      const float* in = &window.pixels[(row + static_cast<size_t>(x.first[i] - window.x)) * size];
+      const double row_weight = y.weights[i * y.stride + static_cast<size_t>(j)];
+      for (int tap = 0; tap < x.count[i]; ++tap, in += size) {
+        const auto weight = static_cast<Number>(row_weight * x.weights[i * x.stride + static_cast<size_t>(tap)]);
+        for (size_t c = 0; c < size; ++c) out[c] += weight * static_cast<Number>(in[c]);
+      }
+    }
+  }
+  return result;
+}
+
+template std::vector<float> ResampleGrid<float>(const PixelWindow&, const AxisTaps&, const AxisTaps&);
+template std::vector<double> ResampleGrid<double>(const PixelWindow&, const AxisTaps&, const AxisTaps&);
+template std::vector<float> ResamplePoints<float>(const PixelWindow&, const AxisTaps&, const AxisTaps&);
+template std::vector<double> ResamplePoints<double>(const PixelWindow&, const AxisTaps&, const AxisTaps&);
+
+}  // namespace belvedere

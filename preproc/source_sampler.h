@@ -1,0 +1,59 @@
+// SourceSampler: a source's values at the positions of a lattice, filtered for the distance between them.
+//
+// A value depends on its own position, the distance between positions and the source, and on nothing else: two pages
+// that hold the same position of the same level get the same bits.
+//
+// Threads: one sampler a thread; the source is shared.
+#pragma once
+
+#include "preproc/lattice.h"
+#include "preproc/raster_source.h"
+#include "preproc/resample.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace belvedere {
+
+// Row by row, latitudes by longitudes; interleaved.
+template <typename Number>
+struct Samples {
+  size_t channels = 1;
+  std::vector<Number> values;  // channels a position
+  std::vector<float> weights;  // how much of the position the source covers, feathered: 0 to 1
+};
+
+class SourceSampler {
+ public:
+  SourceSampler(RasterSource& source, LayerKind kind);
+
+  RasterSource& source() const { return source_; }
+  const GeoBox& extent() const { return georeference_->extent(); }
+  // spacing_deg: distance between posts or texels of the level. Number is double for heights, float for colours.
+  template <typename Number>
+  Samples<Number> Sample(const LatticeRows& lattice, double spacing_deg);
+
+ private:
+  struct Scale {
+    int pyramid_level = 0;
+    double shrink_x = 1, shrink_y = 1;  // pixels of that level between positions
+    bool operator==(const Scale&) const = default;
+  };
+  enum class Edge { kRepeat, kEmpty };  // what lies around the source
+
+  Scale ScaleAt(double latitude_deg, double spacing_deg);
+  std::vector<PixelPoint> PixelsOf(const LatticeRows& lattice, size_t first_row, size_t rows);
+  PixelWindow MakeWindow(int pyramid_level, const AxisTaps& x, const AxisTaps& y, Edge edge) const;
+  template <typename Number>
+  std::vector<Number> Filter(std::span<const PixelPoint> points, size_t columns, const Scale& scale, Kernel kernel,
+                             Edge edge);
+  void Feather(std::span<const PixelPoint> points, size_t columns, std::span<float> weights);
+
+  RasterSource& source_;
+  const LayerKind kind_;
+  const size_t channels_;
+  std::unique_ptr<Georeference> georeference_;
+};
+
+}  // namespace belvedere

@@ -1,0 +1,236 @@
+#include "preproc/spec.h"
+
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <utility>
+
+namespace belvedere {
+namespace {
+
+// Edit distance (Levenshtein).
+size_t Distance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = std::exchange(row[0], i);
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
+    }
+  }
+  return row[b.size()];
+}
+
+std::string_view TypeName(const toml::node& node) {
+  if (node.is_string()) return "a string";
+  if (node.is_integer() || node.is_floating_point()) return "a number";
+  if (node.is_boolean()) return "true or false";
+  if (node.is_array()) return "an array";
+  return node.is_table() ? "a table" : "a date or time";
+}
+
+class Parser {
+ public:
+  explicit Parser(const std::string& path) : path_(path) {}
+
+  Result<BuildSpec> Parse(const toml::table& root) {
+    if (Status status = CheckKeys(root, {"layer"}); !status.ok()) return status;
+    BuildSpec spec;
+    spec.path = path_;
+    const toml::array* layers = root["layer"].as_array();
+    if (layers == nullptr || layers->empty()) {
+      return Status::Error("{}: no layer: write [[layer]] with a name, a kind and its sources", path_);
+    }
+    for (const toml::node& node : *layers) {
+      auto layer = ParseLayer(node);
+      if (!layer.ok()) return layer.status();
+      if (std::any_of(spec.layers.begin(), spec.layers.end(), [&](const auto& l) { return l.name == layer->name; })) {
+        return Error(node, "two layers are named \"{}\"", layer->name);
+      }
+      spec.layers.push_back(std::move(*layer));
+    }
+    if (spec.layers.size() > static_cast<size_t>(kMaxDatasetLayers)) {
+      return Status::Error("{}: {} layers, at most {} fit a dataset", path_, spec.layers.size(), kMaxDatasetLayers);
+    }
+    return spec;
+  }
+
+ private:
+  template <typename... Args>
+  Status Error(const toml::node& node, fmt::format_string<Args...> format, Args&&... args) const {
+    return Status::Error("{}:{}: {}", path_, node.source().begin.line,
+                         fmt::format(format, std::forward<Args>(args)...));
+  }
+
+  Status CheckKeys(const toml::table& table, const std::vector<std::string_view>& known) const {
+    for (const auto& [key, value] : table) {
+      const std::string_view name = key.str();
+      if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+      const auto nearest = std::min_element(known.begin(), known.end(), [&](std::string_view a, std::string_view b) {
+        return Distance(name, a) < Distance(name, b);
+      });
+      return Status::Error("{}:{}: unknown key \"{}\"; the nearest known one is \"{}\"", path_, key.source().begin.line,
+                           name, *nearest);
+    }
+    return {};
+  }
+
+  Result<std::string> String(const toml::table& table, std::string_view key) const {
+    const toml::node* node = table.get(key);
+    if (node == nullptr) return Error(table, "\"{}\" is missing", key);
+    const auto value = node->value_exact<std::string>();
+    if (!value) return Error(*node, "\"{}\" must be a string, here it is {}", key, TypeName(*node));
+    return *value;
+  }
+  Result<double> Number(const toml::node& node, std::string_view key) const {
+    if (!node.is_integer() && !node.is_floating_point()) {
+      return Error(node, "\"{}\" must be a number, here it is {}", key, TypeName(node));
+    }
+    return node.value<double>().value_or(0);
+  }
+
+  Result<LayerSpec> ParseLayer(const toml::node& node) const {
+    const toml::table* table = node.as_table();
+    if (table == nullptr) return Error(node, "\"layer\" must be a table: write [[layer]]");
+    if (Status status = CheckKeys(*table, {"name", "kind", "source"}); !status.ok()) return status;
+    LayerSpec layer;
+    auto name = String(*table, "name");
+    if (!name.ok()) return name.status();
+    layer.name = std::move(*name);
+    if (layer.name.empty()) return Error(*table, "\"name\" is empty");
+    const auto kind = String(*table, "kind");
+    if (!kind.ok()) return kind.status();
+    if (*kind != "elevation" && *kind != "imagery") {
+      return Error(*table->get("kind"), "\"kind\" must be \"elevation\" or \"imagery\", here it is \"{}\"", *kind);
+    }
+    layer.kind = *kind == "elevation" ? LayerKind::kElevation : LayerKind::kImagery;
+    const toml::array* sources = (*table)["source"].as_array();
+    if (sources == nullptr || sources->empty()) {
+      return Error(*table, "layer \"{}\" has no source: write [[layer.source]] with a path", layer.name);
+    }
+    for (const toml::node& source_node : *sources) {
+      auto source = ParseSource(source_node, layer.kind);
+      if (!source.ok()) return source.status();
+      layer.sources.push_back(std::move(*source));
+    }
+    return layer;
+  }
+
+  Result<SourceSpec> ParseSource(const toml::node& node, LayerKind kind) const {
+    const toml::table* table = node.as_table();
+    if (table == nullptr) return Error(node, "\"source\" must be a table: write [[layer.source]]");
+    if (Status status = CheckKeys(*table, {"path", "nodata", "crs", "georeference", "unit", "datum", "feather_m"});
+        !status.ok()) {
+      return status;
+    }
+    SourceSpec source;
+    auto written = String(*table, "path");
+    if (!written.ok()) return written.status();
+    source.written_path = std::move(*written);
+    source.path = (std::filesystem::path(path_).parent_path() / source.written_path).string();
+    if (const toml::node* nodata = table->get("nodata")) {
+      const auto value = Number(*nodata, "nodata");
+      if (!value.ok()) return value.status();
+      source.nodata = *value;
+    }
+    if (const toml::node* feather = table->get("feather_m")) {
+      const auto value = Number(*feather, "feather_m");
+      if (!value.ok()) return value.status();
+      if (!(*value >= 0)) return Error(*feather, "\"feather_m\" must not be negative");
+      source.feather_m = *value;
+    }
+    if (table->contains("crs")) {
+      auto crs = String(*table, "crs");
+      if (!crs.ok()) return crs.status();
+      source.crs = std::move(*crs);
+    }
+    if (Status status = ParseGeoreference(*table, source); !status.ok()) return status;
+    if (Status status = ParseHeightKeys(*table, kind, source); !status.ok()) return status;
+    return source;
+  }
+
+  Status ParseGeoreference(const toml::table& table, SourceSpec& source) const {
+    const toml::node* node = table.get("georeference");
+    if (node == nullptr) return {};
+    const toml::array* array = node->as_array();
+    if (array == nullptr || (array->size() != 4 && array->size() != 6)) {
+      return Error(*node,
+                   "\"georeference\" must be [west, south, east, north] in degrees or a geotransform of 6 numbers");
+    }
+    std::array<double, 6> numbers{};
+    for (size_t i = 0; i < array->size(); ++i) {
+      const auto number = Number((*array)[i], "georeference");
+      if (!number.ok()) return number.status();
+      numbers[i] = *number;
+    }
+    if (array->size() == 6) {
+      source.geotransform = numbers;
+      return {};
+    }
+    source.box = GeoBox{numbers[0], numbers[1], numbers[2], numbers[3]};
+    if (!(numbers[2] > numbers[0]) || !(numbers[3] > numbers[1])) {
+      return Error(*node, "\"georeference\" needs west < east and south < north");
+    }
+    return {};
+  }
+
+  Status ParseHeightKeys(const toml::table& table, LayerKind kind, SourceSpec& source) const {
+    if (kind == LayerKind::kImagery) {
+      for (const std::string_view key : {"unit", "datum"}) {
+        if (const toml::node* node = table.get(key)) return Error(*node, "\"{}\" means nothing for imagery", key);
+      }
+      return {};
+    }
+    if (const toml::node* node = table.get("unit")) {
+      const auto unit = String(table, "unit");
+      if (!unit.ok()) return unit.status();
+      static constexpr std::pair<std::string_view, double> kUnits[] = {
+          {"m", 1.0}, {"ft", 0.3048}, {"us-ft", 1200.0 / 3937.0}, {"cm", 0.01}};
+      for (const auto& [name, metres] : kUnits) {
+        if (*unit == name) source.metres_per_unit = metres;
+      }
+      if (!source.metres_per_unit) return Error(*node, "\"unit\" must be \"m\", \"ft\", \"us-ft\" or \"cm\"");
+    }
+    const toml::node* datum = table.get("datum");
+    if (datum == nullptr) return {};
+    if (datum->is_integer() || datum->is_floating_point()) {
+      source.datum = VerticalDatum::kOffset;
+      source.datum_m = datum->value<double>().value_or(0);
+      return {};
+    }
+    const auto name = datum->value_exact<std::string>();
+    if (!name || (*name != "egm96" && *name != "ellipsoid")) {
+      return Error(*datum, "\"datum\" must be \"egm96\", \"ellipsoid\" or a number of metres above the ellipsoid");
+    }
+    source.datum = *name == "egm96" ? VerticalDatum::kEgm96 : VerticalDatum::kEllipsoid;
+    return {};
+  }
+
+  const std::string& path_;
+};
+
+}  // namespace
+
+Result<BuildSpec> ParseSpec(std::string_view text, const std::string& path) {
+  try {
+    return Parser(path).Parse(toml::parse(text, path));
+  } catch (const toml::parse_error& problem) {
+    return Status::Error("{}:{}: {}", path, problem.source().begin.line, problem.description());
+  }
+}
+
+Result<BuildSpec> LoadSpec(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) return Status::Error("{}: cannot read the spec", path);
+  return ParseSpec(text.str(), path);
+}
+
+}  // namespace belvedere

@@ -1,0 +1,52 @@
+// Build spec: which layers a dataset has and what each is made of, as read from a TOML file.
+//
+// Sources of a layer are in the order of the file: a later one wins where it has data. Every mistake in the file is one
+// line that names the file, the line, the key and, for a key nobody knows, the nearest that is known.
+//
+// Units: degrees; feather in metres; datum_m in metres above the ellipsoid.
+// Threads: values.
+#pragma once
+
+#include "runtime/base/status.h"
+#include "runtime/paging/dataset.h"
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace belvedere {
+
+enum class VerticalDatum { kEgm96, kEllipsoid, kOffset };
+
+struct SourceSpec {
+  std::string path;          // to open: relative paths are taken from the spec's folder
+  std::string written_path;  // as it stands in the spec
+  std::optional<double> nodata;
+  std::optional<std::string> crs;  // anything that GDAL takes: "EPSG:27700", WKT, a PROJ string
+  // At most one of these: the outer edges west, south, east, north; or a GDAL geotransform.
+  std::optional<GeoBox> box;
+  std::optional<std::array<double, 6>> geotransform;
+  std::optional<double> metres_per_unit;  // elevation; without it the file's own unit, or metres
+  VerticalDatum datum = VerticalDatum::kEgm96;
+  double datum_m = 0;  // for kOffset: height of the source's zero above the ellipsoid
+  double feather_m = 0;
+};
+
+struct LayerSpec {
+  std::string name;
+  LayerKind kind = LayerKind::kElevation;
+  std::vector<SourceSpec> sources;
+};
+
+struct BuildSpec {
+  std::string path;
+  std::vector<LayerSpec> layers;
+};
+
+// path names the spec in messages and says where relative sources lie.
+Result<BuildSpec> ParseSpec(std::string_view text, const std::string& path);
+Result<BuildSpec> LoadSpec(const std::string& path);
+
+}  // namespace belvedere

@@ -1,0 +1,61 @@
+#include "render/hud.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace belvedere {
+namespace {
+
+constexpr size_t kMostNotices = 4;
+constexpr size_t kLongestNotice = 110;
+constexpr OverlayBatch::Colour kText = {236, 240, 244, 255};
+constexpr OverlayBatch::Colour kNotice = {255, 196, 110, 255};
+constexpr OverlayBatch::Colour kBackground = {10, 16, 26, 130};
+constexpr size_t kOwnLines = 4;
+
+}  // namespace
+
+std::string LengthText(double metres) {
+  const double size = std::abs(metres);
+  if (size < 10) return fmt::format("{:.2f} m", metres);
+  if (size < 10'000) return fmt::format("{:.0f} m", metres);
+  if (size < 1e6) return fmt::format("{:.1f} km", metres / 1000);
+  return fmt::format("{} {:03} km", static_cast<int>(metres / 1e6), static_cast<int>(size / 1000) % 1000);
+}
+
+std::vector<std::string> HudLines(const HudFacts& facts) {
+  std::vector<std::string> lines;
+  const double fps = facts.frame_ms > 0 ? 1000.0 / facts.frame_ms : 0;
+  lines.push_back(
+      fmt::format("{:.0f} frames/s   frame {:.1f} ms   draw {:.1f} ms", fps, facts.frame_ms, facts.draw_ms));
+  lines.push_back(facts.has_terrain
+                      ? fmt::format("error {:.1f} px asked, {:.1f} achieved   {} pages waiting", facts.error_asked_px,
+                                    facts.error_achieved_px, facts.pages_waiting + facts.uploads_pending)
+                      : std::string("waiting for the first surface"));
+  lines.push_back(fmt::format("{} triangles   {} quadnodes", facts.triangles, facts.nodes));
+  lines.push_back(ToLatin1(fmt::format("{:.4f}° {}  {:.4f}° {}   height {}   over ground {}",
+                                       std::abs(facts.latitude_deg), facts.latitude_deg < 0 ? 'S' : 'N',
+                                       std::abs(facts.longitude_deg), facts.longitude_deg < 0 ? 'W' : 'E',
+                                       LengthText(facts.height_m), LengthText(facts.height_above_ground_m))));
+  for (size_t i = 0; i < std::min(facts.notices.size(), kMostNotices); ++i) {
+    lines.push_back(ToLatin1(facts.notices[i]).substr(0, kLongestNotice));
+  }
+  return lines;
+}
+
+void AddHud(const std::vector<std::string>& lines, OverlayBatch& batch) {
+  constexpr float kMargin = 6;
+  float width = 0;
+  for (const std::string& line : lines) width = std::max(width, batch.atlas().WidthOf(line));
+  const float height = Atlas::kLineHeight_px * static_cast<float>(lines.size());
+  batch.AddRectangle(kMargin, kMargin, width + 2 * kMargin, height + 2 * kMargin, kFrontDepth, kBackground);
+  float baseline = 2 * kMargin + Atlas::kFontHeight_px;
+  for (size_t i = 0; i < lines.size(); ++i) {
+    batch.AddText(2 * kMargin, baseline, kFrontDepth, lines[i], i < kOwnLines ? kText : kNotice);
+    baseline += Atlas::kLineHeight_px;
+  }
+}
+
+}  // namespace belvedere

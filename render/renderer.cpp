@@ -1,0 +1,305 @@
+#include "render/renderer.h"
+
+#include "render/hud.h"
+#include "render/moved_objects.h"
+#include "render/object_overlay.h"
+#include "render/upload_order.h"
+#include "render/view_block.h"
+#include "runtime/base/log.h"
+#include "runtime/earth/ellipsoid.h"
+#include "runtime/earth/sun.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+namespace belvedere {
+namespace {
+
+constexpr double kHudRefresh_s = 0.25;
+
+double NoTerrainHeight(const ViewParameters& parameters, double now_s) {
+  return std::max(1.0, ToGeodetic(parameters.EyeAt(now_s)).height_m);
+}
+
+RenderOptions WithDefaults(RenderOptions options, const ContextFacts& facts) {
+  if (options.samples < 0) options.samples = facts.software ? 0 : 4;
+  return options;
+}
+
+}  // namespace
+
+struct Renderer::View {
+  View(ViewId view_id, std::shared_ptr<ViewChannel> view_channel, Presenter* shown_by, const GpuPages& pages,
+       TerrainPrograms& programs, const Atlas& atlas, int samples)
+      : id(view_id),
+        channel(std::move(view_channel)),
+        presenter(shown_by),
+        target(samples),
+        terrain(pages, programs),
+        overlay(atlas),
+        hud(atlas) {}
+
+  const ViewId id;
+  const std::shared_ptr<ViewChannel> channel;
+  Presenter* const presenter;
+  FrameTarget target;
+  TerrainPass terrain;
+  OverlayBatch overlay, hud;
+  bool has_terrain = false, has_objects = false;
+  std::shared_ptr<const ViewParameters> parameters;  // of the last frame
+  double drawn_s = 0;                                // clock time that it showed
+  ViewMatrices matrices;
+  VisibleDraws visible, visible_objects;
+  uint32_t uploads_pending = 0;
+  FrameReport report;
+  double hud_s = -1e9;
+};
+
+Result<std::unique_ptr<Renderer>> Renderer::Make(const RenderOptions& options, const LayerTable& layers,
+                                                 const Clock& clock) {
+  Result<ContextFacts> facts = InspectContext();
+  if (!facts.ok()) return facts.status();
+  const RenderOptions complete = WithDefaults(options, *facts);
+  auto renderer = std::unique_ptr<Renderer>(new Renderer(complete, layers, clock, std::move(*facts)));
+  if (!renderer->atlas_.font().ok()) LogWarning("{}", renderer->atlas_.font().message());
+  return renderer;
+}
+
+Renderer::Renderer(const RenderOptions& options, const LayerTable& layers, const Clock& clock, ContextFacts facts)
+    : options_(options),
+      clock_(clock),
+      facts_(std::move(facts)),
+      atlas_(options.font_path),
+      pages_(options, layers, facts_),
+      objects_(pages_),
+      overlay_(atlas_),
+      view_block_(GlBuffer::Make()) {
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GEQUAL);
+  glEnable(GL_CULL_FACE);
+  glNamedBufferData(view_block_.get(), sizeof(ViewBlock), nullptr, GL_STREAM_DRAW);
+}
+
+Renderer::~Renderer() = default;
+
+void Renderer::AddView(ViewId id, std::shared_ptr<ViewChannel> channel, Presenter* presenter) {
+  views_.push_back(
+      std::make_unique<View>(id, std::move(channel), presenter, pages_, terrain_programs_, atlas_, options_.samples));
+}
+
+void Renderer::RemoveView(ViewId id) {
+  std::erase_if(views_, [&](const auto& view) { return view->id == id; });
+}
+
+Renderer::View* Renderer::Find(ViewId id) {
+  const auto found = std::find_if(views_.begin(), views_.end(), [&](const auto& view) { return view->id == id; });
+  return found == views_.end() ? nullptr : found->get();
+}
+
+void Renderer::SetNotices(std::vector<std::string> notices) {
+  notices_ = std::move(notices);
+}
+
+void Renderer::FetchLists(View& view) {
+  if (view.channel->terrain_lists.Fetch()) {
+    view.has_terrain = true;
+    pages_.Touch(view.channel->terrain_lists.front(), frame_);
+    view.terrain.SetList(view.channel->terrain_lists.front());
+  }
+  if (view.channel->object_lists.Fetch()) {
+    view.has_objects = true;
+    pages_.Touch(view.channel->object_lists.front(), frame_);
+  }
+}
+
+void Renderer::UploadPages() {
+  const double start_s = clock_.NowSeconds();
+  const uint64_t bytes_before = pages_.uploaded_bytes();
+  std::vector<std::span<const PagePin>> wishes;
+  for (const auto& view : views_) {
+    wishes.emplace_back(view->channel->terrain_lists.front().uploads);
+    wishes.emplace_back(view->channel->object_lists.front().uploads);
+  }
+  for (const PagePin* pin : FairUploadOrder(wishes, frame_)) {
+    pages_.Upload(*pin, frame_);
+    if ((clock_.NowSeconds() - start_s) * 1000 >= options_.upload_budget_ms) break;
+  }
+  for (const auto& view : views_) {
+    view->uploads_pending = 0;
+    for (const DisplayList* list : {&view->channel->terrain_lists.front(), &view->channel->object_lists.front()}) {
+      view->uploads_pending +=
+          static_cast<uint32_t>(std::count_if(list->uploads.begin(), list->uploads.end(),
+                                              [](const PagePin& pin) { return !pin.page().residency()->on_gpu(); }));
+    }
+  }
+  upload_bytes_ = pages_.uploaded_bytes() - bytes_before;
+  upload_ms_ = (clock_.NowSeconds() - start_s) * 1000;
+}
+
+void Renderer::DrawFrame(FrameRecorder& recorder, Context& context) {
+  ++frame_;
+  start_s_ = clock_.NowSeconds();
+  const double frame_ms = last_start_s_ ? (start_s_ - *last_start_s_) * 1000 : 0;
+  last_start_s_ = start_s_;
+  for (const auto& view : views_) FetchLists(*view);
+  UploadPages();
+  for (const auto& view : views_) {
+    const double view_start_s = clock_.NowSeconds();
+    view->parameters = view->channel->parameters.Get();
+    if (view->parameters->width_px <= 0 || view->parameters->height_px <= 0) continue;  // a minimised window
+    view->drawn_s = start_s_;
+    const Drawn drawn = DrawView(*view, *view->parameters, start_s_);
+    const double draw_ms = (clock_.NowSeconds() - view_start_s) * 1000;
+    if (view->presenter != nullptr) {
+      view->presenter->Present(view->target.colour_texture(), view->target.width(), view->target.height());
+      if (Status status = context.MakeCurrent(); !status.ok()) LogError("{}", status.message());
+    }
+    Report(*view, frame_ms, draw_ms, drawn, recorder);
+  }
+}
+
+Renderer::Drawn Renderer::DrawView(View& view, const ViewParameters& parameters, double now_s) {
+  const DisplayList& terrain = view.channel->terrain_lists.front();
+  const DisplayList& objects = view.channel->object_lists.front();
+  const double height_m =
+      view.has_terrain ? terrain.statistics.height_above_ground_m : NoTerrainHeight(parameters, now_s);
+  view.matrices = MatricesOf(parameters, now_s, height_m);
+  const glm::dvec3 sun_ecef = SunDirectionEcef(parameters.utc_s + (now_s - parameters.time_s));
+  const ViewBlock block = MakeViewBlock(parameters, view.matrices, sun_ecef);
+  glNamedBufferData(view_block_.get(), sizeof(ViewBlock), &block, GL_STREAM_DRAW);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, view_block_.get());
+
+  view.target.Resize(parameters.width_px, parameters.height_px);
+  view.target.Begin(parameters.background);
+  Drawn drawn;
+  if (view.has_terrain) {
+    WalkList(terrain, view.matrices, view.visible);
+    if (parameters.wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
+    view.terrain.Draw(terrain, view.visible.terrain, view.matrices);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    drawn = {view.visible.triangles, static_cast<uint32_t>(view.visible.terrain.size())};
+  }
+  view.overlay.Clear();
+  if (view.has_objects && parameters.draw_objects) {
+    WalkList(objects, view.matrices, view.visible_objects);
+    const std::vector<MovedObject> moved =
+        MoveObjects(objects, view.visible_objects.instances, parameters, view.matrices, now_s);
+    drawn.triangles += objects_.Draw(objects, moved, parameters, view.matrices, sun_ecef);
+    AddObjectOverlay(objects, moved, parameters, view.matrices, view.overlay);
+  }
+  if (parameters.sky) sky_.Draw();
+  DrawOverlay(view, parameters, now_s);
+  view.target.Resolve();
+  // Nothing is left to be drawn when the next frame uploads into what this one reads; and what a frame costs is known.
+  glFinish();
+  return drawn;
+}
+
+void Renderer::DrawOverlay(View& view, const ViewParameters& parameters, double now_s) {
+  if (parameters.hud) {
+    if (now_s - view.hud_s >= kHudRefresh_s) {
+      view.hud_s = now_s;
+      const DisplayList::Statistics& terrain = view.channel->terrain_lists.front().statistics;
+      const Geodetic eye = ToGeodetic(view.matrices.eye_ecef);
+      HudFacts facts;
+      facts.frame_ms = view.report.frame_ms;
+      facts.draw_ms = view.report.draw_ms;
+      facts.error_asked_px = parameters.error_px;
+      facts.error_achieved_px = terrain.achieved_error_px;
+      facts.pages_waiting = terrain.pages_waiting;
+      facts.uploads_pending = view.uploads_pending;
+      facts.triangles = view.report.triangles;
+      facts.nodes = view.report.nodes;
+      facts.has_terrain = view.has_terrain;
+      facts.latitude_deg = eye.latitude_deg;
+      facts.longitude_deg = eye.longitude_deg;
+      facts.height_m = eye.height_m;
+      facts.height_above_ground_m = terrain.height_above_ground_m;
+      facts.notices = notices_;
+      view.hud.Clear();
+      AddHud(HudLines(facts), view.hud);
+    }
+    view.overlay.Append(view.hud);
+  }
+  overlay_.Draw(view.overlay);
+}
+
+void Renderer::Report(View& view, double frame_ms, double draw_ms, const Drawn& drawn, FrameRecorder& recorder) {
+  const DisplayList& terrain = view.channel->terrain_lists.front();
+  FrameReport& report = view.report;
+  ++report.frame;
+  report.terrain_list = view.has_terrain ? terrain.number : 0;
+  report.object_list = view.has_objects ? view.channel->object_lists.front().number : 0;
+  report.draw_ms = draw_ms;
+  report.frame_ms = frame_ms;
+  report.triangles = drawn.triangles;
+  report.nodes = drawn.nodes;
+  report.uploads_pending = view.uploads_pending;
+  report.behind = view.has_terrain && terrain.statistics.behind;
+  view.channel->frame.Publish(report);
+
+  FrameSample sample;
+  sample.view = view.id;
+  sample.frame = frame_;
+  sample.time_s = start_s_;
+  sample.frame_ms = frame_ms;
+  sample.draw_ms = draw_ms;
+  sample.triangles = drawn.triangles;
+  sample.nodes = drawn.nodes;
+  sample.achieved_error_px = terrain.statistics.achieved_error_px;
+  sample.behind = report.behind;
+  sample.has_terrain = view.has_terrain;
+  sample.upload_ms = upload_ms_;
+  sample.upload_bytes = upload_bytes_;
+  recorder.Add(sample);
+}
+
+Result<Picture> Renderer::Capture(ViewId id, Moment moment) {
+  View* view = Find(id);
+  if (view == nullptr) return Status::Error("capture: there is no view {}", id);
+  const auto newest = view->channel->parameters.Get();
+  const bool of_parameters = moment == Moment::kOfParameters || !view->parameters;
+  const ViewParameters& parameters = of_parameters ? *newest : *view->parameters;
+  if (parameters.width_px <= 0 || parameters.height_px <= 0) {
+    return Status::Error("capture: view {} has no pixels; give it a size", id);
+  }
+  const Drawn drawn = DrawView(*view, parameters, of_parameters ? parameters.time_s : view->drawn_s);
+  return ReadBack(*view, parameters, drawn);
+}
+
+Picture Renderer::ReadBack(const View& view, const ViewParameters& parameters, const Drawn& drawn) const {
+  const DisplayList& terrain = view.channel->terrain_lists.front();
+  Picture picture;
+  picture.width_px = view.target.width();
+  picture.height_px = view.target.height();
+  picture.rgb = view.target.ReadRgb();
+  picture.depth_m = view.target.ReadDepth();
+  for (float& depth : picture.depth_m) {
+    depth = AxisDistance(view.matrices.clip_from_camera, parameters.projection, depth);
+  }
+  picture.matrices = view.matrices;
+  picture.view_number = parameters.number;
+  picture.terrain_list = view.has_terrain ? terrain.number : 0;
+  picture.object_list = view.has_objects ? view.channel->object_lists.front().number : 0;
+  picture.triangles = drawn.triangles;
+  picture.nodes = drawn.nodes;
+  picture.achieved_error_px = terrain.statistics.achieved_error_px;
+  picture.settled = view.has_terrain && terrain.statistics.settled;
+  return picture;
+}
+
+std::vector<double> Renderer::Redraw(ViewId id, int times) {
+  std::vector<double> draw_ms;
+  View* view = Find(id);
+  if (view == nullptr || !view->parameters) return draw_ms;
+  for (int i = 0; i < times; ++i) {
+    const double start_s = clock_.NowSeconds();
+    DrawView(*view, *view->parameters, view->drawn_s);
+    draw_ms.push_back((clock_.NowSeconds() - start_s) * 1000);
+  }
+  return draw_ms;
+}
+
+}  // namespace belvedere

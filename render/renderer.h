@@ -1,0 +1,105 @@
+// Renderer: draws the newest lists of all views, once a call. All of OpenGL that is not a window lies behind it; it has
+// no thread and no pacing of its own (render_thread.h has).
+//
+// A frame: fetch every view's newest lists; upload wished pages within the budget; then for every view take its newest
+// parameters, compute the matrices for now, cull, and draw terrain, objects, sky, and what lies over the picture.
+//
+// Units:   milliseconds for costs, seconds for times.
+// Threads: one at a time, with the context current that it was made with.
+// Owns:    everything on the GPU; of each view's channel, the consumer's side of its lists.
+#pragma once
+
+#include "render/context.h"
+#include "render/frame_recorder.h"
+#include "render/frame_target.h"
+#include "render/gl_objects.h"
+#include "render/gpu_pages.h"
+#include "render/object_pass.h"
+#include "render/overlay_pass.h"
+#include "render/picture.h"
+#include "render/render_options.h"
+#include "render/sky_pass.h"
+#include "render/terrain_pass.h"
+#include "runtime/base/clock.h"
+#include "runtime/scene/view_channel.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace belvedere {
+
+// Shows what was drawn: a window.
+class Presenter {
+ public:
+  virtual ~Presenter() = default;
+  // Shows the texture; it may leave another context current.
+  virtual void Present(GLuint colour_texture, int width, int height) = 0;
+};
+
+class Renderer {
+ public:
+  // REQUIRES: a context is current; layers and clock live longer.
+  static Result<std::unique_ptr<Renderer>> Make(const RenderOptions& options, const LayerTable& layers,
+                                                const Clock& clock);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  // presenter: null for a view that nobody sees; it must live until RemoveView.
+  void AddView(ViewId id, std::shared_ptr<ViewChannel> channel, Presenter* presenter);
+  void RemoveView(ViewId id);
+
+  // Draws one frame of all views and adds to `recorder`. `context` is made current again after each Present.
+  void DrawFrame(FrameRecorder& recorder, Context& context);
+
+  // Draws the lists that the last frame drew once more, and reads them back: at the moment of the newest parameters, so
+  // that a view that stands still gives the same picture every time, or at the last frame's.
+  enum class Moment { kOfParameters, kOfLastFrame };
+  Result<Picture> Capture(ViewId id, Moment moment);
+
+  // Draws the lists of the last frame `times` over, at its moment, with no uploads; what each took, milliseconds.
+  std::vector<double> Redraw(ViewId id, int times);
+
+  // Lines that the heads-up displays show under their own, such as pages that failed.
+  void SetNotices(std::vector<std::string> notices);
+
+  const ContextFacts& facts() const { return facts_; }
+  const GpuPages& pages() const { return pages_; }
+
+ private:
+  struct View;
+  struct Drawn {
+    uint32_t triangles = 0, nodes = 0;
+  };
+  Renderer(const RenderOptions& options, const LayerTable& layers, const Clock& clock, ContextFacts facts);
+
+  View* Find(ViewId id);
+  void FetchLists(View& view);
+  void UploadPages();
+  Drawn DrawView(View& view, const ViewParameters& parameters, double now_s);
+  void DrawOverlay(View& view, const ViewParameters& parameters, double now_s);
+  void Report(View& view, double frame_ms, double draw_ms, const Drawn& drawn, FrameRecorder& recorder);
+  Picture ReadBack(const View& view, const ViewParameters& parameters, const Drawn& drawn) const;
+
+  const RenderOptions options_;
+  const Clock& clock_;
+  const ContextFacts facts_;
+  const Atlas atlas_;
+  GpuPages pages_;
+  TerrainPrograms terrain_programs_;
+  SkyPass sky_;
+  ObjectPass objects_;
+  OverlayPass overlay_;
+  GlBuffer view_block_;
+  std::vector<std::unique_ptr<View>> views_;
+  std::vector<std::string> notices_;
+  uint64_t frame_ = 0;
+  std::optional<double> last_start_s_;
+  double start_s_ = 0;
+  double upload_ms_ = 0;
+  uint64_t upload_bytes_ = 0;
+};
+
+}  // namespace belvedere

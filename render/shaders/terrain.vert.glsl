@@ -1,0 +1,96 @@
+// One terrain vertex. Its position depends on its absolute number and the view alone, never on the quadnode that is drawn
+// with it: that, and `invariant`, is what makes neighbours meet without a gap.
+layout(location = 0) in vec3 position;         // metres in the frame of the vertex's page
+layout(location = 1) in vec2 octahedral;       // outward normal in the same frame
+layout(location = 2) in uint draw_number;      // one a draw (base instance)
+
+const uint kPosts = 129u;
+const uint kVerticesPerPage = kPosts * kPosts;
+const uint kNorthPole = 0x80000000u;
+
+struct FrameRow {
+  mat4 clip_from_frame;
+  vec4 scaled_from_frame[3];                   // rows of a 3x4 matrix: scaled space from the frame
+};
+struct DrawRow {
+  uvec2 south_west;
+  float per_grid_unit;                         // 1 / side of the quadnode
+  float unused;
+  vec4 image[3];                               // offset u, offset v, scale, array layer
+};
+layout(std430, binding = 0) readonly buffer Slots { uvec4 slots[]; };   // frame, south-west x and y, post spacing
+layout(std430, binding = 1) readonly buffer Frames { FrameRow frames[]; };
+layout(std430, binding = 2) readonly buffer Draws { DrawRow draws[]; };
+
+invariant gl_Position;
+// Few and full: what a software renderer pays for a small triangle grows with the number of these.
+out vec4 shade;                                // x: what the ground's colour is multiplied by; yzw: air added to it
+out vec4 uv01;
+flat out vec3 pages;
+#if LAYER2 != 0
+out vec2 uv2;
+#endif
+
+vec3 NormalInFrame() {
+  vec3 n = vec3(octahedral, 1.0 - abs(octahedral.x) - abs(octahedral.y));
+  if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
+  return normalize(n);
+}
+
+vec2 ImageCoordinate(vec4 image, vec2 local) { return (4.0 + 248.0 * (image.xy + image.z * local)) * (1.0 / 256.0); }
+
+void main() {
+  uint number = uint(gl_VertexID);
+  uint slot = number / kVerticesPerPage;
+  uint post = number - slot * kVerticesPerPage;
+  uint row = post / kPosts;
+  uvec4 where = slots[slot];
+  uint frame = where.x;
+  gl_Position = frames[frame].clip_from_frame * vec4(position, 1.0);
+
+  uvec2 grid = where.yz + where.w * uvec2(post - row * kPosts, row);
+  vec2 local = clamp(vec2(grid - draws[draw_number].south_west) * draws[draw_number].per_grid_unit, 0.0, 1.0);
+  // A pole is a point of every meridian.
+  if (grid.y == 0u || grid.y == kNorthPole) local.x = 0.5;
+
+  vec3 scaled = vec3(dot(frames[frame].scaled_from_frame[0], vec4(position, 1.0)),
+                     dot(frames[frame].scaled_from_frame[1], vec4(position, 1.0)),
+                     dot(frames[frame].scaled_from_frame[2], vec4(position, 1.0)));
+  float radius = length(scaled);
+  float height_m = (radius - 1.0) * kEarthRadius_m;
+  vec3 up = scaled / radius;                   // of the scaled sphere: within 0.2 degrees of the geodetic one
+  float sun_sine = dot(up, sun_ecef.xyz);
+  float day = DayLight(sun_sine);
+
+#if SLOPES
+  // Flat ground is as bright as under an image; slopes towards the sun brighter, those away from it darker.
+  vec3 n = NormalInFrame();
+  vec3 normal = normalize(vec3(dot(frames[frame].scaled_from_frame[0].xyz, n), dot(frames[frame].scaled_from_frame[1].xyz, n),
+                               dot(frames[frame].scaled_from_frame[2].xyz, n)));
+  vec3 sun = sun_sine > 0.25 ? sun_ecef.xyz : normalize(sun_ecef.xyz + (0.25 - sun_sine) * up);
+  day *= clamp(1.0 + 1.1 * (dot(normal, sun) - dot(up, sun)), 0.35, 1.4);
+#endif
+
+  // Air between the ground and the eye: the density met, averaged over the way, and never more than the curved air holds.
+  vec3 to_eye = eye_scaled.xyz - scaled;
+  float distance_m = length(to_eye) * kEarthRadius_m;
+  float climb = (eye_scaled.w - height_m) * (1.0 / kScaleHeight_m);
+  float density = Density(height_m);
+  float mean_share = abs(climb) < 0.05 ? 1.0 : (1.0 - exp2(-1.442695 * climb)) / climb;
+  float rise = dot(up, to_eye) * kEarthRadius_m / max(distance_m, 1.0);
+  float path_m = min(distance_m * mean_share, kScaleHeight_m / (max(rise, 0.0) + 0.03));
+  float depth = kGroundShare * kZenithDepth / kScaleHeight_m * density * path_m;
+  vec3 veil = Airlight(depth);
+#if OVERLAYS == 1
+  day *= 2.0;                                  // an overlay of 0.5 leaves the colour as it is
+#elif OVERLAYS == 2
+  day *= 4.0;
+#endif
+  shade = vec4(day * (1.0 - veil.g), veil * DaySky(sun_sine));
+
+  uv01 = vec4(ImageCoordinate(draws[draw_number].image[0], local), ImageCoordinate(draws[draw_number].image[1], local));
+#if LAYER2 != 0
+  uv2 = ImageCoordinate(draws[draw_number].image[2], local);
+#endif
+  pages = vec3(draws[draw_number].image[0].w, draws[draw_number].image[1].w, draws[draw_number].image[2].w);
+}

@@ -1,0 +1,155 @@
+#include "render/terrain_pass.h"
+
+#include "render/shader_sources.h"
+#include "render/view_block.h"
+#include "runtime/base/status.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <string>
+
+namespace belvedere {
+namespace {
+
+// DrawRow of shaders/terrain.vert.glsl.
+struct DrawRow {
+  uint32_t south_west_x = 0, south_west_y = 0;
+  float per_grid_unit = 0;
+  float unused = 0;
+  std::array<glm::vec4, kMaxImageLayers> image{};
+};
+static_assert(sizeof(DrawRow) == 64);
+static_assert(sizeof(FrameRow) == 112);
+static_assert(sizeof(TerrainVertex) == 16);
+
+template <typename T>
+void Send(const GlBuffer& buffer, const std::vector<T>& rows) {
+  glNamedBufferData(buffer.get(), static_cast<GLsizeiptr>(std::max<size_t>(rows.size(), 1) * sizeof(T)),
+                    rows.empty() ? nullptr : rows.data(), GL_STREAM_DRAW);
+}
+
+}  // namespace
+
+GLuint TerrainPrograms::For(const Layers& layers) {
+  GlProgram& program = programs_[layers];
+  if (!program) {
+    const auto overlays = std::count(layers.begin(), layers.end(), uint8_t{2});
+    std::string defines;
+    for (size_t i = 0; i < layers.size(); ++i) defines += fmt::format("#define LAYER{} {}\n", i, layers[i]);
+    defines += fmt::format("#define OVERLAYS {}\n#define SLOPES {}\n", std::min<std::ptrdiff_t>(overlays, 2),
+                           overlays == 0 ? 1 : 0);
+    const std::string common = std::string(shaders::kView) + std::string(shaders::kAtmosphere);
+    program = MakeProgram("terrain", common + std::string(shaders::kTerrainVert),
+                          common + std::string(shaders::kTerrainFrag), defines);
+  }
+  return program.get();
+}
+
+TerrainPass::TerrainPass(const GpuPages& pages, TerrainPrograms& programs)
+    : pages_(pages),
+      programs_(programs),
+      vertex_array_(GlVertexArray::Make()),
+      indices_(GlBuffer::Make()),
+      draw_numbers_(GlBuffer::Make()),
+      slots_(GlBuffer::Make()),
+      frames_(GlBuffer::Make()),
+      draws_(GlBuffer::Make()) {
+  const GLuint array = vertex_array_.get();
+  glVertexArrayVertexBuffer(array, 0, pages.vertices(), 0, sizeof(TerrainVertex));
+  glEnableVertexArrayAttrib(array, 0);
+  glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, 0);
+  glVertexArrayAttribBinding(array, 0, 0);
+  glEnableVertexArrayAttrib(array, 1);
+  glVertexArrayAttribFormat(array, 1, 2, GL_SHORT, GL_TRUE, offsetof(TerrainVertex, normal));
+  glVertexArrayAttribBinding(array, 1, 0);
+  glEnableVertexArrayAttrib(array, 2);
+  glVertexArrayAttribIFormat(array, 2, 1, GL_UNSIGNED_INT, 0);
+  glVertexArrayAttribBinding(array, 2, 1);
+  glVertexArrayBindingDivisor(array, 1, 1);
+  glVertexArrayElementBuffer(array, indices_.get());
+}
+
+TerrainPass::Layers TerrainPass::LayersOf(const TerrainDraw& draw) const {
+  Layers layers{};
+  for (size_t i = 0; i < layers.size(); ++i) {
+    const int slot = draw.images[i].slot;
+    if (slot >= 0) layers[i] = pages_.IsColour(slot) ? 1 : 2;
+  }
+  return layers;
+}
+
+void TerrainPass::SetList(const DisplayList& list) {
+  Send(indices_, list.indices);
+  SetSlots(list);
+  SetDraws(list);
+}
+
+void TerrainPass::SetSlots(const DisplayList& list) {
+  struct SlotRow {
+    uint32_t frame, x, y, post_spacing;
+  };
+  std::vector<SlotRow> rows(static_cast<size_t>(pages_.terrain_pool().size()));
+  for (const TerrainSlot& slot : list.slots) {
+    BELVEDERE_CHECK(pages_.terrain_pool().Owns(slot.slot) && slot.frame < list.frames.size());
+    rows[static_cast<size_t>(slot.slot)] = {slot.frame, slot.south_west.x, slot.south_west.y, slot.post_spacing};
+  }
+  Send(slots_, rows);
+}
+
+void TerrainPass::SetDraws(const DisplayList& list) {
+  std::vector<DrawRow> rows;
+  rows.reserve(list.terrain_draws.size());
+  layers_of_draw_.clear();
+  for (const TerrainDraw& draw : list.terrain_draws) {
+    const GridPoint corner = draw.node.SouthWest();
+    DrawRow row{corner.x, corner.y, 1.0F / static_cast<float>(draw.node.GridSize()), 0.0F, {}};
+    for (size_t i = 0; i < row.image.size(); ++i) {
+      const ImageUse& use = draw.images[i];
+      if (use.slot < 0) continue;
+      row.image[i] = {use.offset_u, use.offset_v, use.scale, static_cast<float>(pages_.ArrayLayer(use.slot))};
+    }
+    rows.push_back(row);
+    layers_of_draw_.push_back(LayersOf(draw));
+  }
+  Send(draws_, rows);
+  layers_met_ = layers_of_draw_;
+  std::sort(layers_met_.begin(), layers_met_.end());
+  layers_met_.erase(std::unique(layers_met_.begin(), layers_met_.end()), layers_met_.end());
+  if (rows.size() > numbered_draws_) {
+    std::vector<uint32_t> numbers(rows.size() * 2);
+    std::iota(numbers.begin(), numbers.end(), 0U);
+    Send(draw_numbers_, numbers);
+    numbered_draws_ = numbers.size();
+    glVertexArrayVertexBuffer(vertex_array_.get(), 1, draw_numbers_.get(), 0, sizeof(uint32_t));
+  }
+}
+
+void TerrainPass::SetMatrices(const DisplayList& list, const ViewMatrices& matrices) {
+  std::vector<FrameRow> rows;
+  rows.reserve(list.frames.size());
+  for (const Frame& frame : list.frames) rows.push_back(MakeFrameRow(frame, matrices.clip_from_ecef));
+  Send(frames_, rows);
+}
+
+void TerrainPass::Draw(const DisplayList& list, std::span<const uint32_t> draws, const ViewMatrices& matrices) {
+  if (draws.empty()) return;
+  SetMatrices(list, matrices);
+  glBindVertexArray(vertex_array_.get());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, slots_.get());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, frames_.get());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, draws_.get());
+  pages_.BindImages();
+  for (const Layers& layers : layers_met_) {
+    glUseProgram(programs_.For(layers));
+    for (const uint32_t number : draws) {
+      if (layers_of_draw_[number] != layers) continue;
+      const TerrainDraw& draw = list.terrain_draws[number];
+      const void* first = reinterpret_cast<const void*>(draw.first_index * sizeof(uint32_t));
+      glDrawElementsInstancedBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(draw.index_count), GL_UNSIGNED_INT, first,
+                                          1, number);
+    }
+  }
+}
+
+}  // namespace belvedere

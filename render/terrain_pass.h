@@ -1,0 +1,58 @@
+// TerrainPass: draws the surface of one view. All quadnodes share one vertex buffer and use absolute indices, so that a
+// vertex is the same wherever it is drawn (display_list.h).
+//
+// What a list brings (indices, slots, draws) goes to the GPU once, when it is new; the matrices of its frames every
+// time. Threads: the render thread.
+#pragma once
+
+#include "render/gl_objects.h"
+#include "render/gpu_pages.h"
+#include "render/list_walk.h"
+#include "runtime/scene/display_list.h"
+#include "runtime/scene/view_parameters.h"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+namespace belvedere {
+
+// The programs, one for each combination of layers that is met; shared by all views.
+class TerrainPrograms {
+ public:
+  // layers: of each image that a quadnode has, 0 none, 1 colour, 2 overlay.
+  using Layers = std::array<uint8_t, kMaxImageLayers>;
+  GLuint For(const Layers& layers);
+
+ private:
+  std::map<Layers, GlProgram> programs_;
+};
+
+class TerrainPass {
+ public:
+  TerrainPass(const GpuPages& pages, TerrainPrograms& programs);
+
+  // The list is drawn from now on. REQUIRES: it stays as it is until the next SetList.
+  void SetList(const DisplayList& list);
+  // draws: indices of the list's terrain_draws.
+  void Draw(const DisplayList& list, std::span<const uint32_t> draws, const ViewMatrices& matrices);
+
+ private:
+  using Layers = TerrainPrograms::Layers;
+  Layers LayersOf(const TerrainDraw& draw) const;
+  void SetDraws(const DisplayList& list);
+  void SetSlots(const DisplayList& list);
+  void SetMatrices(const DisplayList& list, const ViewMatrices& matrices);
+
+  const GpuPages& pages_;
+  TerrainPrograms& programs_;
+  GlVertexArray vertex_array_;
+  GlBuffer indices_, draw_numbers_, slots_, frames_, draws_;
+  size_t numbered_draws_ = 0;
+  std::vector<Layers> layers_of_draw_;
+  std::vector<Layers> layers_met_;
+};
+
+}  // namespace belvedere

@@ -1,0 +1,72 @@
+// StationSpec: a station as its TOML file describes it. docs/manual.md lists the keys.
+//
+// Paths in the file are relative to the file's folder; in the spec they are ready to be opened.
+// Threads: values.
+#pragma once
+
+#include "runtime/app/overview.h"
+#include "runtime/app/target.h"
+#include "runtime/app/tether.h"
+#include "runtime/base/status.h"
+#include "runtime/earth/units.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace belvedere {
+
+enum class ViewKind : uint8_t { kFree, kTethered, kGodsEye, kOverview };
+
+struct ViewSpec {
+  ViewKind kind = ViewKind::kFree;
+  Geodetic position{0, 0, 12'000e3};  // where it starts; where a follower waits for its target
+  double heading_deg = 0, pitch_deg = -90;
+  double vfov_deg = 60;
+  std::optional<TargetRule> target;  // tethered and God's eye: always there
+  std::string target_text;
+  Tether tether;
+  Overview overview;
+
+  std::vector<std::string> layers;  // image layers by name, colour first; empty: all that there are
+  double error_px = 2.0, texel_px = 1.25;
+  bool hud = true, labels = true, objects = true, symbols = false, sky = true;
+};
+
+struct WindowSpec {
+  std::string title;
+  int width_px = 1024, height_px = 768;
+  std::optional<std::pair<int, int>> position_px;
+  ViewSpec view;
+};
+
+struct FeedSpec {
+  std::vector<std::string> listen;  // ADDR:PORT, multicast groups among them
+  std::optional<uint8_t> exercise;
+  std::string interface_address;  // that joins the groups; empty: the system's choice
+  double timeout_s = 12;
+};
+
+struct StationSpec {
+  std::string file;     // for messages
+  std::string dataset;  // folder
+  std::string models;   // folder of models with their catalogue.toml; empty: the project's own
+  int64_t cache_MiB = 512;
+  double exaggeration = 1;
+  std::optional<double> utc_s;  // simulated time at the start; nullopt: the real time
+  double max_fps = 60;
+  FeedSpec feed;
+  std::vector<WindowSpec> windows;
+  std::vector<std::pair<std::string, std::string>> keys;  // key -> command in its written form
+};
+
+inline constexpr size_t kMostWindows = 16;
+
+Result<StationSpec> LoadStation(const std::string& path);
+// name: stands in messages; folder: what relative paths start from.
+Result<StationSpec> ParseStation(std::string_view text, const std::string& name, const std::string& folder);
+
+}  // namespace belvedere

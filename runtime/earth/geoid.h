@@ -1,0 +1,33 @@
+// Geoid: the height of mean sea level above the WGS 84 ellipsoid, from a NOAA .gtx grid such as the EGM96 grid of 15
+// minutes that Debian's proj-data brings. Bilinear, as PROJ interpolates it.
+//
+// Units: degrees in, metres out. height above the ellipsoid = height above mean sea level + Height.
+// Threads: immutable once loaded; any thread.
+#pragma once
+
+#include "runtime/base/status.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace belvedere {
+
+class Geoid {
+ public:
+  static Result<std::shared_ptr<const Geoid>> Load(const std::string& path);
+  // egm96_15.gtx, found where PROJ looks for it: PROJ_DATA, PROJ_LIB, then the system's folders.
+  static Result<std::shared_ptr<const Geoid>> LoadEgm96();
+
+  // Any longitude; latitude [-90, 90].
+  double Height(double latitude_deg, double longitude_deg) const;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  double south_deg_ = 0, west_deg_ = 0, latitude_step_deg_ = 1, longitude_step_deg_ = 1;
+  int rows_ = 0, columns_ = 0;
+  std::vector<float> heights_m_;  // row by row from the south-west
+};
+
+}  // namespace belvedere

@@ -1,0 +1,96 @@
+#include "runtime/paging/dataset_store.h"
+
+#include <nlohmann/json.hpp>
+
+namespace belvedere::store {
+namespace {
+
+using nlohmann::json;
+
+json SourceToJson(const SourceRecord& source) {
+  json out = {{"path", source.path},
+              {"crs", source.crs},
+              {"extent_deg",
+               {source.extent.west_deg, source.extent.south_deg, source.extent.east_deg, source.extent.north_deg}},
+              {"nodata", nullptr},
+              {"datum", source.datum},
+              {"finest_level", source.finest_level}};
+  if (source.nodata) out["nodata"] = *source.nodata;
+  return out;
+}
+
+SourceRecord SourceFromJson(const json& in) {
+  SourceRecord source;
+  source.path = in.at("path").get<std::string>();
+  source.crs = in.at("crs").get<std::string>();
+  const auto& extent = in.at("extent_deg");
+  source.extent = {extent.at(0).get<double>(), extent.at(1).get<double>(), extent.at(2).get<double>(),
+                   extent.at(3).get<double>()};
+  if (!in.at("nodata").is_null()) source.nodata = in.at("nodata").get<double>();
+  source.datum = in.at("datum").get<std::string>();
+  source.finest_level = in.at("finest_level").get<int>();
+  return source;
+}
+
+json LayerToJson(const LayerRecord& layer) {
+  json sources = json::array();
+  for (const auto& source : layer.sources) sources.push_back(SourceToJson(source));
+  return {{"name", layer.name},
+          {"kind", LayerKindName(layer.kind)},
+          {"max_level", layer.max_level},
+          {"pages_per_level", layer.pages_per_level},
+          {"pages", layer.pages},
+          {"bytes", layer.bytes},
+          {"vertical_reference", layer.vertical_reference},
+          {"sources", sources}};
+}
+
+LayerRecord LayerFromJson(const json& in) {
+  LayerRecord layer;
+  layer.name = in.at("name").get<std::string>();
+  const auto kind = in.at("kind").get<std::string>();
+  if (kind != "elevation" && kind != "imagery")
+    throw json::other_error::create(501, "unknown layer kind " + kind, nullptr);
+  layer.kind = kind == "elevation" ? LayerKind::kElevation : LayerKind::kImagery;
+  layer.max_level = in.at("max_level").get<int>();
+  layer.pages_per_level = in.at("pages_per_level").get<std::vector<int64_t>>();
+  layer.pages = in.at("pages").get<int64_t>();
+  layer.bytes = in.at("bytes").get<int64_t>();
+  layer.vertical_reference = in.at("vertical_reference").get<std::string>();
+  for (const auto& source : in.at("sources")) layer.sources.push_back(SourceFromJson(source));
+  return layer;
+}
+
+}  // namespace
+
+std::string ToJson(const Metadata& metadata) {
+  json layers = json::array();
+  for (const auto& layer : metadata.layers) layers.push_back(LayerToJson(layer));
+  const json out = {{"format", "belvedere dataset"},
+                    {"version", kDatasetVersion},
+                    {"build_time", metadata.build_time},
+                    {"layers", layers}};
+  return out.dump(1);
+}
+
+Result<Metadata> FromJson(std::string_view text) {
+  try {
+    const json in = json::parse(text);
+    const int version = in.at("version").get<int>();
+    if (version != kDatasetVersion) {
+      return Status::Error("dataset of version {}, this program reads version {}; build it again", version,
+                           kDatasetVersion);
+    }
+    Metadata metadata;
+    metadata.build_time = in.at("build_time").get<std::string>();
+    for (const auto& layer : in.at("layers")) metadata.layers.push_back(LayerFromJson(layer));
+    if (metadata.layers.size() > static_cast<size_t>(kMaxDatasetLayers)) {
+      return Status::Error("{} layers, more than {}", metadata.layers.size(), kMaxDatasetLayers);
+    }
+    return metadata;
+  } catch (const std::exception& problem) {
+    return Status::Error("metadata is damaged ({}); build it again", problem.what());
+  }
+}
+
+}  // namespace belvedere::store

@@ -1,0 +1,216 @@
+#include "servers/delta_values.h"
+
+#include "runtime/base/status.h"
+#include "runtime/earth/bisection.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace belvedere {
+namespace {
+
+// Four posts of a row at once; compilers have this as a type of their own.
+typedef float Lane4 __attribute__((vector_size(16)));
+
+Lane4 Load(const float* from) {
+  Lane4 lanes;
+  std::memcpy(&lanes, from, sizeof(lanes));
+  return lanes;
+}
+
+// The vertices as three rasters, so that rows can be taken four posts at a time. Relative to the page's middle, where
+// floats are finest. Three spare floats at the end keep the last load inside.
+class Surface {
+ public:
+  explicit Surface(std::span<const TerrainVertex> vertices) {
+    const TerrainVertex& middle = vertices[kVerticesPerPage / 2];
+    for (std::vector<float>* axis : {&x_, &y_, &z_}) axis->resize(kVerticesPerPage + 3);
+    for (size_t i = 0; i < kVerticesPerPage; ++i) {
+      x_[i] = vertices[i].x - middle.x;
+      y_[i] = vertices[i].y - middle.y;
+      z_[i] = vertices[i].z - middle.z;
+    }
+  }
+
+  glm::vec3 at(Post post) const {
+    const auto index = static_cast<size_t>(post.index());
+    return {x_[index], y_[index], z_[index]};
+  }
+
+  float SquaredDistance(Post post, const glm::vec3& to) const {
+    const glm::vec3 between = at(post) - to;
+    return glm::dot(between, between);
+  }
+
+  // Largest squared distance of posts (first .. last, row) from the plane point that begins at `start` and moves by
+  // `step` a column.
+  float RowError(int row, int first, int last, const glm::vec3& start, const glm::vec3& step) const {
+    const int offset = row * kPosts;
+    const Lane4 lane{0, 1, 2, 3};
+    Lane4 greatest{0, 0, 0, 0};
+    for (int column = first; column <= last; column += 4) {
+      const auto index = static_cast<size_t>(offset + column);
+      const Lane4 along = lane + static_cast<float>(column - first);
+      const Lane4 x = Load(&x_[index]) - (start.x + along * step.x);
+      const Lane4 y = Load(&y_[index]) - (start.y + along * step.y);
+      const Lane4 z = Load(&z_[index]) - (start.z + along * step.z);
+      Lane4 squared = x * x + y * y + z * z;
+      const Lane4 nothing{0, 0, 0, 0};
+      squared = along <= static_cast<float>(last - first) + nothing ? squared : nothing;
+      greatest = squared > greatest ? squared : greatest;
+    }
+    return std::max(std::max(greatest[0], greatest[1]), std::max(greatest[2], greatest[3]));
+  }
+
+ private:
+  std::vector<float> x_, y_, z_;
+};
+
+// The plane through the three corners of a triangle, as a point that is linear in column and row.
+struct Plane {
+  glm::vec3 at_origin;  // of column `origin.column`, row `origin.row`
+  glm::vec3 per_column;
+  glm::vec3 per_row;
+  Post origin;
+
+  glm::vec3 At(int column, int row) const {
+    return at_origin + static_cast<float>(column - origin.column) * per_column +
+           static_cast<float>(row - origin.row) * per_row;
+  }
+};
+
+// hypotenuse diagonal, right angle at the apex: the legs lie along its row and its column.
+float DiagonalError(const Surface& surface, const Split& split, Post apex) {
+  const Post in_row = split.end_a.row == apex.row ? split.end_a : split.end_b;
+  const Post in_column = split.end_a.row == apex.row ? split.end_b : split.end_a;
+  const glm::vec3 corner = surface.at(apex);
+  const int columns = in_row.column - apex.column;
+  const int rows = in_column.row - apex.row;
+  const Plane plane{corner, (surface.at(in_row) - corner) / static_cast<float>(columns),
+                    (surface.at(in_column) - corner) / static_cast<float>(rows), apex};
+  const int side = std::abs(rows);
+  float greatest = 0;
+  for (int away = 0; away < side; ++away) {  // rows from the apex; the last is a single corner
+    const int row = apex.row + (rows > 0 ? away : -away);
+    const int width = side - away;
+    const int first = columns > 0 ? apex.column : apex.column - width;
+    greatest = std::max(greatest, surface.RowError(row, first, first + width, plane.At(first, row), plane.per_column));
+  }
+  return greatest;
+}
+
+// hypotenuse along a row or a column, `post` in its middle.
+float StraightError(const Surface& surface, const Split& split, Post post, Post apex) {
+  const glm::vec3 a = surface.at(split.end_a);
+  const glm::vec3 b = surface.at(split.end_b);
+  const glm::vec3 middle = 0.5F * (a + b);
+  const bool along_row = split.end_a.row == split.end_b.row;
+  const int span = along_row ? post.column - split.end_a.column : post.row - split.end_a.row;
+  const int side = along_row ? apex.row - post.row : apex.column - post.column;  // + or - span
+  const glm::vec3 along = (b - a) / static_cast<float>(2 * span);
+  const glm::vec3 across = (surface.at(apex) - middle) / static_cast<float>(side);
+  const Plane plane{middle, along_row ? along : across, along_row ? across : along, post};
+  float greatest = 0;
+  const int first_row = along_row ? 0 : 1 - span;
+  for (int away = first_row; away < span; ++away) {
+    const int row = along_row && side < 0 ? post.row - away : post.row + away;
+    const int width = span - std::abs(away);
+    const int first = along_row ? post.column - width : side > 0 ? post.column : post.column - width;
+    const int last = along_row ? post.column + width : side > 0 ? post.column + width : post.column;
+    greatest = std::max(greatest, surface.RowError(row, first, last, plane.At(first, row), plane.per_column));
+  }
+  return greatest;
+}
+
+// The two finest levels hold so few posts that they are tried one by one.
+float SmallDiagonalError(const Surface& surface, const Split& split, Post post, Post apex) {
+  const auto between = [&](Post a, Post b) {
+    const Post middle{(a.column + b.column) / 2, (a.row + b.row) / 2};
+    return surface.SquaredDistance(middle, 0.5F * (surface.at(a) + surface.at(b)));
+  };
+  const float own = surface.SquaredDistance(post, 0.5F * (surface.at(split.end_a) + surface.at(split.end_b)));
+  return std::max({own, between(apex, split.end_a), between(apex, split.end_b)});
+}
+
+float OwnError(const Surface& surface, Post post, int level) {
+  const Split split = SplitAt(post);
+  if (level == kBisectionLevels - 1) {
+    return surface.SquaredDistance(post, 0.5F * (surface.at(split.end_a) + surface.at(split.end_b)));
+  }
+  float greatest = 0;
+  for (const Post apex : {split.apex_a, split.apex_b}) {
+    if (!apex.inside()) continue;
+    const float error = level == kBisectionLevels - 2 ? SmallDiagonalError(surface, split, post, apex)
+                        : level % 2 == 0              ? DiagonalError(surface, split, apex)
+                                                      : StraightError(surface, split, post, apex);
+    greatest = std::max(greatest, error);
+  }
+  return greatest;
+}
+
+// Calls visit(post) for every post of one level.
+template <typename Visit>
+void ForEachPost(int level, const Visit& visit) {
+  const int span = HalfSpan(level);
+  if (level % 2 == 0) {
+    for (int row = span; row < kPosts; row += 2 * span) {
+      for (int column = span; column < kPosts; column += 2 * span) visit(Post{column, row});
+    }
+    return;
+  }
+  for (int row = 0; row < kPosts; row += span) {
+    const int first = (row / span) % 2 == 0 ? span : 0;
+    for (int column = first; column < kPosts; column += 2 * span) visit(Post{column, row});
+  }
+}
+
+}  // namespace
+
+std::vector<float> DeltaValues(std::span<const TerrainVertex> vertices, float error_m) {
+  BELVEDERE_CHECK(vertices.size() == kVerticesPerPage);
+  const Surface surface(vertices);
+  std::vector<float> deltas(kVerticesPerPage, 0.0F);
+  // From the finest level up, so that children are known before what they depend on.
+  for (int level = kBisectionLevels - 1; level >= 0; --level) {
+    ForEachPost(level, [&](Post post) {
+      float delta = std::sqrt(OwnError(surface, post, level)) + error_m;
+      if (level < kBisectionLevels - 1) {
+        for (const Post child : ChildrenOf(post)) {
+          if (child.inside()) delta = std::max(delta, deltas[static_cast<size_t>(child.index())]);
+        }
+      }
+      deltas[static_cast<size_t>(post.index())] = delta;
+    });
+  }
+  // The corners split nothing and are always drawn; all else depends on them.
+  const float greatest = deltas[kVerticesPerPage / 2];
+  for (const Post corner : {Post{0, 0}, Post{kCells, 0}, Post{0, kCells}, Post{kCells, kCells}}) {
+    deltas[static_cast<size_t>(corner.index())] = greatest;
+  }
+  return deltas;
+}
+
+std::array<float, kBisections> ReachOfLevels(std::span<const TerrainVertex> vertices) {
+  BELVEDERE_CHECK(vertices.size() == kVerticesPerPage);
+  static_assert(kBisections == kBisectionLevels);
+  constexpr float kRoundedUp = 1.000001F;
+  const Surface surface(vertices);
+  std::array<float, kBisections> reach{};
+  for (int level = kBisectionLevels - 2; level >= 0; --level) {
+    float greatest = 0;
+    ForEachPost(level, [&](Post post) {
+      const glm::vec3 position = surface.at(post);
+      for (const Post child : ChildrenOf(post)) {
+        if (child.inside()) greatest = std::max(greatest, surface.SquaredDistance(child, position));
+      }
+    });
+    const auto index = static_cast<size_t>(level);
+    reach[index] = (reach[index + 1] + std::sqrt(greatest)) * kRoundedUp;
+  }
+  return reach;
+}
+
+}  // namespace belvedere

@@ -1,0 +1,158 @@
+#include "servers/stock_modules.h"
+
+#include "runtime/earth/geoid.h"
+#include "servers/mip_levels.h"
+#include "servers/model_reader.h"
+#include "servers/shaded_relief.h"
+#include "servers/terrain_builder.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace belvedere {
+namespace {
+
+ReadModule ElevationModule(const Dataset& dataset, int layer, const LayerRecord& record) {
+  ReadModule module;
+  module.layer = record.name;
+  module.kind = PageKind::kElevation;
+  module.max_level = record.max_level;
+  module.exists = [&dataset, layer](Quadcode node) { return dataset.Exists(layer, node); };
+  module.read = [&dataset, layer](ReadContext&, Quadcode node) -> Result<std::unique_ptr<Page>> {
+    Result<std::shared_ptr<ElevationPage>> page = dataset.ReadElevation(layer, node);
+    if (!page.ok()) return page.status();
+    return std::unique_ptr<Page>(std::make_unique<ElevationPage>(std::move(**page)));
+  };
+  return module;
+}
+
+ReadModule ImageryModule(const Dataset& dataset, int layer, const LayerRecord& record) {
+  ReadModule module;
+  module.layer = record.name;
+  module.kind = PageKind::kColour;
+  module.max_level = record.max_level;
+  module.exists = [&dataset, layer](Quadcode node) { return dataset.Exists(layer, node); };
+  module.read = [&dataset, layer](ReadContext&, Quadcode node) -> Result<std::unique_ptr<Page>> {
+    Result<std::shared_ptr<ImagePage>> page = dataset.ReadImage(layer, node);
+    if (!page.ok()) return page.status();
+    FillMipLevels(**page);
+    return std::unique_ptr<Page>(std::make_unique<ImagePage>(std::move(**page)));
+  };
+  return module;
+}
+
+// The finest heights there are for a quadnode: its own page, or that of an ancestor; none where even the root is bad.
+struct Heights {
+  PagePin pin;
+  Quadcode node;
+};
+std::optional<Heights> FinestHeights(ReadContext& context, const Dataset& dataset, int layer, DataType type,
+                                     Quadcode node) {
+  const int finest = dataset.MaxLevel(layer);
+  if (node.level() > finest) node = node.Ancestor(finest);
+  while (true) {
+    if (dataset.Exists(layer, node)) {
+      Result<PagePin> page = context.Obtain(type, node);  // a failure is marked in the cache, where the user sees it
+      if (page.ok()) return Heights{std::move(*page), node};
+    }
+    if (node.is_root()) return std::nullopt;
+    node = node.Parent();
+  }
+}
+
+Result<std::unique_ptr<Page>> ReadTerrain(ReadContext& context, const Dataset& dataset, const std::optional<int>& layer,
+                                          DataType elevation, Quadcode node, double exaggeration) {
+  TerrainInput input{.node = node, .heights = nullptr, .heights_node = node, .exaggeration = exaggeration};
+  if (!layer) {
+    input.finer_exists = true;  // the ellipsoid goes on being round at every level
+    return std::unique_ptr<Page>(BuildTerrain(input));
+  }
+  const std::optional<Heights> heights = FinestHeights(context, dataset, *layer, elevation, node);
+  if (heights) {
+    input.heights = &heights->pin.as<ElevationPage>();
+    input.heights_node = heights->node;
+  }
+  input.finer_exists = dataset.HasChildren(*layer, node);
+  return std::unique_ptr<Page>(BuildTerrain(input));
+}
+
+ReadModule TerrainModule(const Dataset& dataset, const std::optional<int>& layer, DataType elevation,
+                         const StockOptions& options) {
+  ReadModule module;
+  module.layer = kTerrainLayer;
+  module.kind = PageKind::kTerrain;
+  module.threads = options.terrain_threads;
+  for (const LayerRecord& record : dataset.layers()) module.max_level = std::max(module.max_level, record.max_level);
+  module.exists = [&dataset](Quadcode node) {
+    if (node.is_root()) return true;
+    for (int any = 0; any < static_cast<int>(dataset.layers().size()); ++any) {
+      if (dataset.Exists(any, node)) return true;
+    }
+    return false;
+  };
+  module.read = [&dataset, layer, elevation, exaggeration = options.exaggeration](ReadContext& context, Quadcode node) {
+    return ReadTerrain(context, dataset, layer, elevation, node, exaggeration);
+  };
+  return module;
+}
+
+ReadModule ReliefModule(const ReadModule& elevation) {
+  ReadModule module;
+  module.layer = kReliefLayer;
+  module.kind = PageKind::kOverlay;
+  module.max_level = elevation.max_level;
+  module.exists = elevation.exists;
+  std::shared_ptr<const Geoid> sea;  // without it, the sea is that of the ellipsoid: relief hardly differs
+  if (Result<std::shared_ptr<const Geoid>> geoid = Geoid::LoadEgm96(); geoid.ok()) sea = *geoid;
+  module.read = [sea, type = elevation.type](ReadContext& context, Quadcode node) -> Result<std::unique_ptr<Page>> {
+    const Result<PagePin> heights = context.Obtain(type, node);
+    if (!heights.ok()) return heights.status();
+    return std::unique_ptr<Page>(ShadeRelief(heights->as<ElevationPage>(), node, sea.get()));
+  };
+  return module;
+}
+
+ReadModule ModelModule(const ModelCatalogue& models) {
+  ReadModule module;
+  module.layer = kModelLayer;
+  module.kind = PageKind::kModel;
+  module.max_level = kMaxLevel;
+  module.exists = [count = static_cast<int64_t>(models.entries().size())](Quadcode node) {
+    return node.level() == kMaxLevel && node.row() == 0 && node.column() < count;
+  };
+  module.read = [&models](ReadContext&, Quadcode node) -> Result<std::unique_ptr<Page>> {
+    Result<std::unique_ptr<ModelPage>> page = ReadModel(models, ModelCatalogue::ModelNumber(node));
+    if (!page.ok()) return page.status();
+    return std::unique_ptr<Page>(std::move(*page));
+  };
+  return module;
+}
+
+}  // namespace
+
+Status RegisterStockModules(ModuleRegistry& registry, const Dataset& dataset, const ModelCatalogue& models,
+                            const StockOptions& options) {
+  BELVEDERE_CHECK(options.exaggeration > 0);
+  for (int layer = 0; layer < static_cast<int>(dataset.layers().size()); ++layer) {
+    const LayerRecord& record = dataset.layers()[static_cast<size_t>(layer)];
+    const bool heights = record.kind == LayerKind::kElevation;
+    const Status added =
+        registry.Add(heights ? ElevationModule(dataset, layer, record) : ImageryModule(dataset, layer, record));
+    if (!added.ok()) return Status::Error("{}: {}", dataset.path(), added.message());
+  }
+  const std::optional<int> layer = dataset.FindLayer(LayerKind::kElevation);
+  const ReadModule* elevation = layer ? registry.Find(dataset.layers()[static_cast<size_t>(*layer)].name) : nullptr;
+
+  std::vector<ReadModule> made;
+  made.push_back(TerrainModule(dataset, layer, elevation != nullptr ? elevation->type : DataType{0}, options));
+  if (elevation != nullptr) made.push_back(ReliefModule(*elevation));
+  made.push_back(ModelModule(models));
+  for (ReadModule& module : made) {
+    const Status added = registry.Add(std::move(module));
+    if (!added.ok()) return Status::Error("{}: {}", dataset.path(), added.message());
+  }
+  return {};
+}
+
+}  // namespace belvedere

@@ -1,0 +1,36 @@
+// Stock modules: the layers that every run has.
+//
+//   (dataset's own)  each elevation and imagery layer of the dataset, by its name; imagery gets its mip levels here
+//   terrain          what is drawn of heights: of the first elevation layer, wherever any elevation or imagery exists,
+//   so
+//                    that imagery finer than the heights has a surface to lie on. All 32 roots always exist
+//   relief           shaded relief, where heights exist
+//   model            the models of the catalogue
+//
+// A damaged elevation page is marked failed, with its reason; the terrain there is made of its ancestor's heights, in
+// the end of none, so that there is never a hole.
+//
+// Threads: RegisterStockModules at start, by one thread.
+#pragma once
+
+#include "runtime/base/status.h"
+#include "runtime/paging/dataset.h"
+#include "runtime/paging/model_catalogue.h"
+#include "servers/read_module.h"
+
+namespace belvedere {
+
+inline constexpr const char* kTerrainLayer = "terrain";
+inline constexpr const char* kReliefLayer = "relief";
+inline constexpr const char* kModelLayer = "model";
+
+struct StockOptions {
+  double exaggeration = 1;  // of heights, station-wide; > 0
+  int terrain_threads = 1;
+};
+
+// Fails when a layer of the dataset has the name of another. The dataset and the catalogue outlive the registry.
+Status RegisterStockModules(ModuleRegistry& registry, const Dataset& dataset, const ModelCatalogue& models,
+                            const StockOptions& options);
+
+}  // namespace belvedere

@@ -1,0 +1,181 @@
+#include "servers/terrain_builder.h"
+
+#include "runtime/base/status.h"
+#include "runtime/earth/ellipsoid.h"
+#include "runtime/earth/frame.h"
+#include "servers/delta_values.h"
+#include "servers/height_field.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace belvedere {
+namespace {
+
+struct ColumnGeometry {
+  double sin_longitude = 0, cos_longitude = 0;
+};
+
+std::array<RowGeometry, kPosts> RowsOf(Quadcode node) {
+  std::array<RowGeometry, kPosts> rows;
+  GridPoint point = node.SouthWest();
+  for (RowGeometry& row : rows) {
+    row = RowAt(point.latitude_deg());
+    point.y += node.PostSpacing();
+  }
+  return rows;
+}
+
+std::array<ColumnGeometry, kPosts> ColumnsOf(Quadcode node) {
+  std::array<ColumnGeometry, kPosts> columns;
+  GridPoint point = node.SouthWest();
+  for (ColumnGeometry& column : columns) {
+    const double longitude = point.longitude_deg() * kRadiansPerDegree;
+    column = {std::sin(longitude), std::cos(longitude)};
+    point.x += node.PostSpacing();  // wraps at 180 E, where 180 W has the same bits
+  }
+  return columns;
+}
+
+glm::dvec3 EcefAt(const RowGeometry& row, const ColumnGeometry& column, double height_m) {
+  const double horizontal = (row.prime_vertical_m + height_m) * row.cos_latitude;
+  return {horizontal * column.cos_longitude, horizontal * column.sin_longitude,
+          (row.prime_vertical_m * (1.0 - kEccentricitySquared) + height_m) * row.sin_latitude};
+}
+
+// Octahedral map of a unit vector to two snorm16 (Cigolle et al., "A survey of efficient representations for
+// independent unit vectors", 2014).
+uint32_t PackNormal(const glm::vec3& n) {
+  const float sum = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+  float x = n.x / sum;
+  float y = n.y / sum;
+  if (n.z < 0) {
+    const float folded = (1.0F - std::abs(y)) * (x < 0 ? -1.0F : 1.0F);
+    y = (1.0F - std::abs(x)) * (y < 0 ? -1.0F : 1.0F);
+    x = folded;
+  }
+  const auto snorm = [](float v) { return static_cast<uint32_t>(static_cast<uint16_t>(std::lrint(v * 32767.0F))); };
+  return snorm(x) | (snorm(y) << 16);
+}
+
+// Surface normal in the frame, from slopes along the meridian and the parallel.
+glm::vec3 NormalAt(const RowGeometry& row, const ColumnGeometry& column, const glm::mat3& ecef_from_frame,
+                   float slope_east, float slope_north) {
+  const auto sin_latitude = static_cast<float>(row.sin_latitude);
+  const auto cos_latitude = static_cast<float>(row.cos_latitude);
+  const auto sin_longitude = static_cast<float>(column.sin_longitude);
+  const auto cos_longitude = static_cast<float>(column.cos_longitude);
+  // up - slope_east * east - slope_north * north
+  const float meridional = cos_latitude + slope_north * sin_latitude;
+  const glm::vec3 ecef{meridional * cos_longitude + slope_east * sin_longitude,
+                       meridional * sin_longitude - slope_east * cos_longitude,
+                       sin_latitude - slope_north * cos_latitude};
+  return glm::normalize(ecef * ecef_from_frame);
+}
+
+std::vector<TerrainVertex> VerticesOf(Quadcode node, const HeightField& field) {
+  const Frame frame = FrameOf(node);
+  const glm::mat3 ecef_from_frame(frame.ecef_from_frame);
+  const std::array<RowGeometry, kPosts> rows = RowsOf(node);
+  const std::array<ColumnGeometry, kPosts> columns = ColumnsOf(node);
+  std::vector<TerrainVertex> vertices(kVerticesPerPage);
+  size_t index = 0;
+  for (const RowGeometry& row : rows) {
+    for (const ColumnGeometry& column : columns) {
+      const glm::dvec3 local = frame.ToFrame(EcefAt(row, column, field.height_m[index]));
+      const glm::vec3 normal =
+          NormalAt(row, column, ecef_from_frame, field.slope_east[index], field.slope_north[index]);
+      vertices[index] = {static_cast<float>(local.x), static_cast<float>(local.y), static_cast<float>(local.z),
+                         PackNormal(normal)};
+      ++index;
+    }
+  }
+  return vertices;
+}
+
+// How far the ellipsoid rises over a straight line across one cell of the quadnode.
+double CellSagitta(Quadcode node) {
+  const double cell_radians = node.SizeDegrees() / kCells * kRadiansPerDegree;
+  const GeoBox box = node.Box();
+  const double nearest_equator_deg = box.south_deg < 0 ? box.north_deg : box.south_deg;
+  const double north_m = cell_radians * kEquatorialRadius_m;
+  const double east_m = north_m * std::cos(nearest_equator_deg * kRadiansPerDegree);
+  return (north_m * north_m + east_m * east_m) / (8.0 * kPolarRadius_m);
+}
+
+}  // namespace
+
+BoundingSphere BoundsOf(Quadcode node, double min_height_m, double max_height_m) {
+  // The border at both heights says all: seen from the middle, nothing within a shell this small is further than its
+  // rim.
+  const std::array<RowGeometry, kPosts> rows = RowsOf(node);
+  const std::array<ColumnGeometry, kPosts> columns = ColumnsOf(node);
+  std::vector<glm::dvec3> points;
+  points.reserve(8 * kPosts + 2);
+  for (const double height_m : {min_height_m, max_height_m}) {
+    for (size_t i = 0; i < kPosts; ++i) {
+      points.push_back(EcefAt(rows.front(), columns[i], height_m));
+      points.push_back(EcefAt(rows.back(), columns[i], height_m));
+      points.push_back(EcefAt(rows[i], columns.front(), height_m));
+      points.push_back(EcefAt(rows[i], columns.back(), height_m));
+    }
+    points.push_back(EcefAt(rows[kPosts / 2], columns[kPosts / 2], height_m));
+  }
+  const glm::dmat3 axes = FrameOf(node).ecef_from_frame;  // a box along the ground is the tightest to start from
+  glm::dvec3 least(std::numeric_limits<double>::max());
+  glm::dvec3 greatest(std::numeric_limits<double>::lowest());
+  for (const glm::dvec3& point : points) {
+    const glm::dvec3 local = point * axes;
+    least = glm::min(least, local);
+    greatest = glm::max(greatest, local);
+  }
+  BoundingSphere sphere;
+  sphere.center_ecef = axes * (0.5 * (least + greatest));
+  double squared = 0;
+  for (const glm::dvec3& point : points) {
+    const glm::dvec3 away = point - sphere.center_ecef;
+    squared = std::max(squared, glm::dot(away, away));
+  }
+  const double rounding_m = node.level() >= kFrameLevel ? 1e-3 : 1.0;  // of vertices to float
+  sphere.radius_m = std::sqrt(squared) + CellSagitta(node) + rounding_m;
+  return sphere;
+}
+
+std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input) {
+  BELVEDERE_CHECK(input.exaggeration > 0);
+  const HeightField field = SampleHeights(input.node, input.heights, input.heights_node, input.exaggeration);
+  const bool interpolated = input.heights != nullptr && input.heights_node != input.node && !input.finer_exists;
+
+  double error_m = 0;
+  if (input.finer_exists) {
+    error_m = CellSagitta(input.node);
+    if (input.heights != nullptr) error_m += static_cast<double>(input.heights->error_m) * input.exaggeration;
+  }
+  auto [low, high] = std::minmax_element(field.height_m.begin(), field.height_m.end());
+  double min_height_m = *low;
+  double max_height_m = *high;
+  if (input.heights != nullptr && !interpolated) {
+    min_height_m = std::min(min_height_m, static_cast<double>(input.heights->min_m) * input.exaggeration);
+    max_height_m = std::max(max_height_m, static_cast<double>(input.heights->max_m) * input.exaggeration);
+  }
+
+  auto page = std::make_unique<TerrainPage>();
+  page->node = input.node;
+  page->vertices = VerticesOf(input.node, field);
+  page->error_m = static_cast<float>(error_m);
+  page->deltas = DeltaValues(page->vertices, page->error_m);
+  page->reach_m = ReachOfLevels(page->vertices);
+  page->min_height_m = static_cast<float>(min_height_m);
+  page->max_height_m = static_cast<float>(max_height_m);
+  const BoundingSphere bounds = BoundsOf(input.node, min_height_m, max_height_m);
+  page->center_ecef = bounds.center_ecef;
+  page->radius_m = bounds.radius_m;
+  return page;
+}
+
+}  // namespace belvedere

@@ -1,0 +1,44 @@
+// Terrain builder: from the heights of a quadnode to the page that managers select from and the render thread draws.
+//
+// Vertices. Each post goes from geodetic coordinates to ECEF and into the quadnode's frame in double, and is rounded to
+// float once; at level 8 and finer it is within a millimetre of where it belongs. All posts on a pole are one point.
+//
+// Normals come from the slopes between the neighbouring posts on either side, the apron included, so that they are the
+// same on both sides of a border. Below the end of the data the slopes of the finest posts are interpolated: shading
+// stays smooth where geometry is a bilinear surface.
+//
+// Delta values. The delta value of a post that splits triangles at level l (bisection.h) is the largest distance of any
+// post within those triangles from the plane of the triangle, at the same column and row; raised to that of the posts
+// that depend on it, and by what the page itself leaves out, error_m. Distances are cartesian, so they know of the
+// Earth's curvature. Every deviation that a triangle can show at a post is thus bounded by the delta value of the post
+// that would split it.
+//
+// Vertical exaggeration multiplies heights before anything is made of them.
+//
+// Source of the nesting: Lindstrom, Pascucci, "Visualization of large terrains made easy" (Visualization 2001).
+// Units: metres. Frames: frame.h. Threads: pure.
+#pragma once
+
+#include "runtime/earth/visibility.h"
+#include "runtime/paging/page.h"
+
+#include <memory>
+
+namespace belvedere {
+
+struct TerrainInput {
+  Quadcode node;
+  // Heights of `heights_node`, which is the quadnode or an ancestor of it; nullptr: the bare ellipsoid.
+  const ElevationPage* heights = nullptr;
+  Quadcode heights_node;
+  // Finer heights than these lie under the quadnode. Without heights: finer quadnodes exist at all.
+  bool finer_exists = false;
+  double exaggeration = 1;  // > 0
+};
+
+std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input);
+
+// A sphere around all that can be drawn of a quadnode whose heights lie between the two.
+BoundingSphere BoundsOf(Quadcode node, double min_height_m, double max_height_m);
+
+}  // namespace belvedere

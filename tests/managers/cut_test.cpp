@@ -1,0 +1,227 @@
+#include "managers/cut.h"
+
+#include "tests/managers/random_earth.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace belvedere {
+namespace {
+
+constexpr DataType kTerrain = 0;
+constexpr DataType kImagery = 1;
+
+// An Earth whose pages all exist down to a level; which are on the GPU is the test's to say.
+class FakePages final : public PageAccess {
+ public:
+  const TerrainPage* Terrain(Quadcode node) override {
+    if (missing.contains(node)) return nullptr;
+    auto& page = pages_[node];
+    if (!page) page = Make(node);
+    return page.get();
+  }
+  std::optional<int> Slot(const PageKey& key) override {
+    if (key.type == kTerrain) return missing.contains(key.node) ? std::nullopt : std::optional<int>(next_slot_++);
+    if (missing_images.contains(key.node)) return std::nullopt;
+    return 1000 + key.node.level();
+  }
+  bool Want(const PageKey& key, float priority) override {
+    wanted[key] = priority;
+    return !failed.contains(key.node);
+  }
+
+  std::set<Quadcode> missing, missing_images, failed;
+  std::map<PageKey, float> wanted;
+
+ private:
+  static std::unique_ptr<TerrainPage> Make(Quadcode node) {
+    auto page = std::make_unique<TerrainPage>();
+    page->node = node;
+    const GeoBox box = node.Box();
+    page->center_ecef = ToEcef({0.5 * (box.south_deg + box.north_deg), 0.5 * (box.west_deg + box.east_deg), 0.0});
+    for (const double latitude : {box.south_deg, box.north_deg}) {
+      for (const double longitude : {box.west_deg, box.east_deg}) {
+        page->radius_m = std::max(page->radius_m, glm::distance(page->center_ecef, ToEcef({latitude, longitude, 0.0})));
+      }
+    }
+    page->max_height_m = 1000;
+    page->error_m = static_cast<float>(std::ldexp(1000.0, -node.level()));
+    return page;
+  }
+  std::map<Quadcode, std::unique_ptr<TerrainPage>> pages_;
+  int next_slot_ = 0;
+};
+
+class CutTest : public testing::Test {
+ protected:
+  CutTest() {
+    layers_.Add({"terrain", PageKind::kTerrain, 0, 12, [](Quadcode node) { return node.level() <= 12; }});
+    layers_.Add({"imagery", PageKind::kColour, 0, 5, [](Quadcode node) { return node.level() <= 5; }});
+    LookFrom(37, -118, 20'000, -30);
+  }
+  void LookFrom(double latitude, double longitude, double height, double pitch_deg) {
+    view_.eye_ecef = ToEcef({latitude, longitude, height});
+    view_.ecef_from_camera = CameraAxes(latitude, longitude, {}, Radians::FromDegrees(pitch_deg), {});
+    view_.image_layers = {kImagery};
+  }
+  Cut Select(const CutLimits& limits = {}) {
+    return SelectCut(view_, MatricesOf(view_, 0, 1000), layers_, kTerrain, limits, pages_);
+  }
+  static int Deepest(const Cut& cut) {
+    int deepest = 0;
+    for (const CutNode& node : cut.nodes) deepest = std::max(deepest, node.node.level());
+    return deepest;
+  }
+
+  LayerTable layers_;
+  FakePages pages_;
+  ViewParameters view_;
+};
+
+// Every cut covers the Earth exactly once.
+void ExpectCover(const Cut& cut) {
+  double area = 0;
+  std::set<Quadcode> nodes;
+  for (const CutNode& node : cut.nodes) {
+    area += node.node.SizeDegrees() * node.node.SizeDegrees();
+    EXPECT_TRUE(nodes.insert(node.node).second);
+    for (int level = 0; level < node.node.level(); ++level) EXPECT_FALSE(nodes.contains(node.node.Ancestor(level)));
+  }
+  EXPECT_DOUBLE_EQ(area, 360.0 * 180.0);
+}
+
+TEST_F(CutTest, CoversTheEarthOnce) {
+  ExpectCover(Select());
+  LookFrom(-89.99, 100, 3000, -10);
+  ExpectCover(Select());
+  LookFrom(0, 180, 1e7, -90);
+  ExpectCover(Select());
+}
+
+TEST_F(CutTest, KeepsTheBoundInViewWhenAllPagesAreThere) {
+  const Cut cut = Select();
+  EXPECT_FALSE(cut.behind);
+  EXPECT_FALSE(cut.waiting);
+  EXPECT_GT(Deepest(cut), 5);
+  for (const CutNode& node : cut.nodes) {
+    if (!node.visible) continue;
+    EXPECT_TRUE(node.finest || node.node.level() == 12) << node.node.ToString();
+  }
+}
+
+TEST_F(CutTest, ATighterBoundRefinesMore) {
+  view_.texel_px = 1e9;
+  view_.error_px = 4;
+  const size_t loose = Select().nodes.size();
+  view_.error_px = 1;
+  EXPECT_GT(Select().nodes.size(), loose);
+}
+
+TEST_F(CutTest, AMissingChildIsWantedAndItsParentDrawnInstead) {
+  const Cut whole = Select();
+  const auto deep = std::find_if(whole.nodes.begin(), whole.nodes.end(),
+                                 [](const CutNode& node) { return node.visible && node.node.level() >= 5; });
+  ASSERT_NE(deep, whole.nodes.end());
+  pages_.missing.insert(deep->node);
+  pages_.wanted.clear();
+  const Cut cut = Select();
+  ExpectCover(cut);
+  EXPECT_TRUE(cut.behind);
+  EXPECT_TRUE(cut.waiting);
+  EXPECT_TRUE(pages_.wanted.contains({kTerrain, deep->node}));
+  EXPECT_GT(pages_.wanted[(PageKey{kTerrain, deep->node})], 1.0F);
+  EXPECT_TRUE(
+      std::any_of(cut.nodes.begin(), cut.nodes.end(), [&](const CutNode& n) { return n.node == deep->node.Parent(); }));
+}
+
+TEST_F(CutTest, AFailedPageIsNotWaitedFor) {
+  const Cut whole = Select();
+  const auto deep = std::find_if(whole.nodes.begin(), whole.nodes.end(),
+                                 [](const CutNode& node) { return node.visible && node.node.level() >= 5; });
+  ASSERT_NE(deep, whole.nodes.end());
+  pages_.missing.insert(deep->node);
+  pages_.failed.insert(deep->node);
+  const Cut cut = Select();
+  EXPECT_FALSE(cut.waiting);
+  EXPECT_FALSE(cut.behind);
+}
+
+TEST_F(CutTest, BehindTheHorizonAndBesideThePictureIsCoarser) {
+  const Cut cut = Select();
+  for (const CutNode& node : cut.nodes) {
+    const double far_side = glm::dot(node.page->center_ecef, view_.eye_ecef);
+    if (far_side < 0) {
+      EXPECT_EQ(node.node.level(), 0) << node.node.ToString();
+    }
+  }
+}
+
+TEST_F(CutTest, AnAncestorsImageServesThroughASubRectangle) {
+  const Cut cut = Select();
+  for (const CutNode& node : cut.nodes) {
+    const ImageUse& image = node.images[0];
+    ASSERT_GE(image.slot, 1000);
+    const int levels = node.node.level() - (image.slot - 1000);
+    EXPECT_FLOAT_EQ(image.scale, std::ldexp(1.0F, -levels));
+    const Quadcode source = node.node.Ancestor(image.slot - 1000);
+    EXPECT_FLOAT_EQ(image.offset_u,
+                    static_cast<float>((node.node.Box().west_deg - source.Box().west_deg) / source.SizeDegrees()));
+    EXPECT_FLOAT_EQ(image.offset_v,
+                    static_cast<float>((node.node.Box().south_deg - source.Box().south_deg) / source.SizeDegrees()));
+  }
+}
+
+TEST_F(CutTest, AMissingImageFallsBackToAnAncestor) {
+  const Quadcode under = Quadcode::Containing(37, -118, 5);
+  pages_.missing_images.insert(under);
+  const Cut cut = Select();
+  for (const CutNode& node : cut.nodes) {
+    if (under.Contains(node.node)) {
+      EXPECT_LT(node.images[0].slot, 1005);
+    }
+  }
+}
+
+TEST_F(CutTest, StopsAtTheLimit) {
+  view_.error_px = 0.01;
+  const Cut cut = Select({60});
+  EXPECT_LE(cut.nodes.size(), 60U + 3U * 32U);
+  EXPECT_TRUE(cut.at_limit);
+  ExpectCover(cut);
+}
+
+TEST_F(CutTest, RecordsNest) {
+  const Cut cut = Select();
+  int depth = 0;
+  std::set<uint32_t> drawn;
+  for (size_t i = 0; i < cut.records.size(); ++i) {
+    const ListRecord& record = cut.records[i];
+    if (record.kind == ListRecord::Kind::kCullBegin) {
+      ++depth;
+      ASSERT_GT(record.skip, i);
+      EXPECT_EQ(cut.records[record.skip - 1].kind, ListRecord::Kind::kCullEnd);
+    } else if (record.kind == ListRecord::Kind::kCullEnd) {
+      --depth;
+    } else {
+      EXPECT_TRUE(drawn.insert(record.index).second);
+    }
+    ASSERT_GE(depth, 0);
+  }
+  EXPECT_EQ(depth, 0);
+  EXPECT_EQ(drawn.size(), cut.nodes.size());
+}
+
+TEST_F(CutTest, OrthographicViewsMeasureByScaleAlone) {
+  LookFrom(37, -118, 2e6, -90);
+  view_.projection = Projection::kOrthographic;
+  view_.ortho_height_m = 4e6;
+  const int coarse = Deepest(Select());
+  view_.ortho_height_m = 4e5;
+  EXPECT_GT(Deepest(Select()), coarse);
+}
+
+}  // namespace
+}  // namespace belvedere

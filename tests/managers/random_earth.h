@@ -1,0 +1,111 @@
+// Terrain pages and cuts made of random numbers, for tests that must hold for any terrain whatever.
+#pragma once
+
+#include "managers/cut.h"
+#include "runtime/earth/ellipsoid.h"
+#include "runtime/earth/frame.h"
+
+#include <glm/geometric.hpp>
+
+#include <memory>
+#include <random>
+#include <unordered_map>
+#include <vector>
+
+namespace belvedere::test {
+
+// Delta values of one page: log-uniform noise, made nested as page.h promises.
+class RandomDeltas {
+ public:
+  explicit RandomDeltas(std::mt19937& random) : random_(random) {}
+
+  std::vector<float> Make() {
+    deltas_.assign(kVerticesPerPage, 0.0F);
+    std::uniform_real_distribution<float> exponent(-6.0F, 12.0F);
+    for (float& delta : deltas_) delta = std::exp2(exponent(random_));
+    // A post has two triangles; nest until nothing changes, one pass a level from the finest up.
+    Nest(kCells, kCells * kPosts + kCells, 0, 0);
+    Nest(kCells * kPosts, 0, kCells * kPosts + kCells, 0);
+    Nest(kCells, kCells * kPosts + kCells, 0, 0);
+    Nest(kCells * kPosts, 0, kCells * kPosts + kCells, 0);
+    for (int pass = 0; pass < kBisections; ++pass) {
+      Nest(kCells, kCells * kPosts + kCells, 0, 0);
+      Nest(kCells * kPosts, 0, kCells * kPosts + kCells, 0);
+    }
+    return deltas_;
+  }
+
+ private:
+  float Nest(int a, int b, int c, int level) {
+    if (level == kBisections) return 0.0F;
+    const int middle = (b + c) / 2;
+    const float below = std::max(Nest(middle, a, b, level + 1), Nest(middle, c, a, level + 1));
+    float& own = deltas_[static_cast<size_t>(middle)];
+    own = std::max(own, below);
+    return own;
+  }
+
+  std::mt19937& random_;
+  std::vector<float> deltas_;
+};
+
+// Leaves in reach_m[level] the greatest distance from a post of that level to one of the next that depends on it.
+inline void MeasureReach(TerrainPage& page, int a, int b, int c, int level) {
+  if (level == kBisections) return;
+  const int middle = (b + c) / 2;
+  const auto at = [&](int post) {
+    const TerrainVertex& v = page.vertices[static_cast<size_t>(post)];
+    return glm::vec3(v.x, v.y, v.z);
+  };
+  if (level + 1 < kBisections) {
+    float& reach = page.reach_m[static_cast<size_t>(level)];
+    for (const int child : {(a + b) / 2, (c + a) / 2})
+      reach = std::max(reach, 1.001F * glm::distance(at(middle), at(child)));
+  }
+  MeasureReach(page, middle, a, b, level + 1);
+  MeasureReach(page, middle, c, a, level + 1);
+}
+
+// A page of flat ground with random delta values.
+inline std::unique_ptr<TerrainPage> FlatPage(Quadcode node, std::vector<float> deltas) {
+  auto page = std::make_unique<TerrainPage>();
+  page->node = node;
+  page->deltas = std::move(deltas);
+  page->vertices.resize(kVerticesPerPage);
+  const Frame frame = FrameOf(node);
+  const GeoBox box = node.Box();
+  const double step = node.SizeDegrees() / kCells;
+  page->center_ecef = ToEcef({0.5 * (box.south_deg + box.north_deg), 0.5 * (box.west_deg + box.east_deg), 0.0});
+  for (int row = 0; row < kPosts; ++row) {
+    for (int column = 0; column < kPosts; ++column) {
+      const glm::dvec3 ecef = ToEcef({box.south_deg + row * step, box.west_deg + column * step, 0.0});
+      const glm::vec3 local(frame.ToFrame(ecef));
+      page->vertices[static_cast<size_t>(row * kPosts + column)] = {local.x, local.y, local.z, 0};
+      page->radius_m = std::max(page->radius_m, glm::distance(ecef, page->center_ecef));
+    }
+  }
+  MeasureReach(*page, kCells, kCells * kPosts + kCells, 0, 0);
+  MeasureReach(*page, kCells * kPosts, 0, kCells * kPosts + kCells, 0);
+  for (int level = kBisections - 2; level >= 0; --level)
+    page->reach_m[static_cast<size_t>(level)] += page->reach_m[static_cast<size_t>(level) + 1];
+  return page;
+}
+
+// A random cut of the whole Earth: roots split again and again at random, down to `deepest`.
+inline std::vector<Quadcode> RandomCutNodes(std::mt19937& random, int splits, int deepest) {
+  std::vector<Quadcode> nodes;
+  for (int tree = 0; tree < kTrees; ++tree) nodes.push_back(Quadcode::Root(tree));
+  for (int i = 0; i < splits; ++i) {
+    // Mostly split what was split last, so that great steps of level stand side by side.
+    std::uniform_int_distribution<size_t> any(0, nodes.size() - 1);
+    std::uniform_int_distribution<size_t> recent(nodes.size() - std::min<size_t>(nodes.size(), 4), nodes.size() - 1);
+    const size_t chosen = i % 3 == 0 ? any(random) : recent(random);
+    const Quadcode node = nodes[chosen];
+    if (node.level() >= deepest) continue;
+    nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(chosen));
+    for (int which = 0; which < 4; ++which) nodes.push_back(node.Child(which));
+  }
+  return nodes;
+}
+
+}  // namespace belvedere::test

@@ -1,0 +1,129 @@
+#include "runtime/paging/page_codec.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <string_view>
+
+namespace belvedere {
+namespace {
+
+ElevationPage Hills(unsigned seed) {
+  std::mt19937 random(seed);
+  ElevationPage page;
+  page.min_m = -12.5f;
+  page.max_m = 4321.25f;
+  page.error_m = 7.75f;
+  for (int i = 0; i < kElevationSide * kElevationSide; ++i) {
+    page.heights_mm.push_back(static_cast<int32_t>(random() % 9000000) - 11000000);
+  }
+  return page;
+}
+
+std::vector<uint8_t> Picture(unsigned seed, bool opaque) {
+  std::mt19937 random(seed);
+  std::vector<uint8_t> rgba(4 * kImageTexels);
+  for (auto& byte : rgba) byte = static_cast<uint8_t>(random());
+  for (size_t i = 3; opaque && i < rgba.size(); i += 4) rgba[i] = 255;
+  return rgba;
+}
+
+TEST(PageCodec, Crc32cIsTheOneOfRfc3720) {
+  const std::string_view digits = "123456789";
+  const std::span<const uint8_t> bytes(reinterpret_cast<const uint8_t*>(digits.data()), digits.size());
+  EXPECT_EQ(Crc32c(bytes), 0xE3069283u);
+  EXPECT_EQ(Crc32c(bytes.subspan(4), Crc32c(bytes.first(4))), 0xE3069283u);
+  EXPECT_EQ(Crc32c(std::vector<uint8_t>(32, 0)), 0x8A9136AAu);
+}
+
+TEST(PageCodec, ElevationComesBackToTheBit) {
+  const ElevationPage page = Hills(1);
+  const auto back = DecodeElevation(EncodeElevation(page));
+  ASSERT_TRUE(back.ok()) << back.message();
+  EXPECT_EQ((*back)->heights_mm, page.heights_mm);
+  EXPECT_EQ((*back)->min_m, page.min_m);
+  EXPECT_EQ((*back)->max_m, page.max_m);
+  EXPECT_EQ((*back)->error_m, page.error_m);
+}
+
+TEST(PageCodec, ElevationHoldsTheWholeRangeOfInt32) {
+  ElevationPage page = Hills(2);
+  page.heights_mm[0] = INT32_MIN;
+  page.heights_mm[1] = INT32_MAX;
+  page.heights_mm.back() = INT32_MIN;
+  const auto back = DecodeElevation(EncodeElevation(page));
+  ASSERT_TRUE(back.ok()) << back.message();
+  EXPECT_EQ((*back)->heights_mm, page.heights_mm);
+}
+
+TEST(PageCodec, ImagesComeBackToTheBitWithAndWithoutAlpha) {
+  for (const bool opaque : {true, false}) {
+    const auto rgba = Picture(3, opaque);
+    const auto bytes = EncodeImage(rgba);
+    EXPECT_EQ(bytes[6] & 1, opaque ? 0 : 1);
+    const auto back = DecodeImage(bytes);
+    ASSERT_TRUE(back.ok()) << back.message();
+    EXPECT_EQ((*back)->format, ImageFormat::kRGBA8);
+    ASSERT_EQ((*back)->texels.size(), ImagePage::MipOffset(kImageMipLevels, ImageFormat::kRGBA8));
+    EXPECT_TRUE(std::equal(rgba.begin(), rgba.end(), (*back)->texels.begin()));
+  }
+}
+
+// The header is written out here; the payload is zstd's, whose bytes may change with its version, so of it only what it
+// unpacks to is held, by the tests above.
+TEST(PageCodec, HeaderBytesArePinned) {
+  ElevationPage flat;
+  flat.heights_mm.assign(static_cast<size_t>(kElevationSide) * kElevationSide, 0);
+  const auto bytes = EncodeElevation(flat);
+  const auto payload = static_cast<uint32_t>(bytes.size() - kPageHeaderBytes);
+  ASSERT_LT(payload, 65536u);
+  constexpr uint32_t kRaw = 12 + 4 * 133 * 133;
+  const std::vector<uint8_t> expected = {'B',
+                                         'V',
+                                         'P',
+                                         'G',
+                                         1,
+                                         1,
+                                         0,
+                                         0,  // magic, version, kind, flags
+                                         kRaw & 0xFF,
+                                         (kRaw >> 8) & 0xFF,
+                                         (kRaw >> 16) & 0xFF,
+                                         0,
+                                         static_cast<uint8_t>(payload & 0xFF),
+                                         static_cast<uint8_t>(payload >> 8),
+                                         0,
+                                         0};
+  EXPECT_EQ(std::vector<uint8_t>(bytes.begin(), bytes.begin() + 16), expected);
+  const std::span<const uint8_t> all(bytes);
+  const uint32_t crc = Crc32c(all.subspan(20), Crc32c(all.first(16)));
+  for (size_t i = 0; i < 4; ++i) EXPECT_EQ(bytes[16 + i], static_cast<uint8_t>(crc >> (8 * i)));
+}
+
+TEST(PageCodec, EveryDamagedByteIsNoticed) {
+  const auto good = EncodeElevation(Hills(4));
+  std::mt19937 random(5);
+  for (int i = 0; i < 300; ++i) {
+    auto bad = good;
+    const size_t at = i < 20 ? static_cast<size_t>(i) : random() % bad.size();
+    bad[at] = static_cast<uint8_t>(bad[at] ^ (1 + random() % 255));
+    const auto back = DecodeElevation(bad);
+    EXPECT_FALSE(back.ok()) << "byte " << at;
+    EXPECT_FALSE(back.message().empty());
+  }
+}
+
+TEST(PageCodec, CutAndForeignBytesAreRefused) {
+  const auto good = EncodeImage(Picture(6, false));
+  for (const size_t length : {size_t{0}, size_t{7}, size_t{19}, size_t{20}, good.size() / 2, good.size() - 1}) {
+    EXPECT_FALSE(DecodeImage(std::span(good).first(length)).ok());
+  }
+  EXPECT_FALSE(DecodeElevation(good).ok()) << "an image is no elevation";
+  auto newer = good;
+  newer[4] = 9;
+  EXPECT_NE(DecodeImage(newer).message().find("version 9"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace belvedere
