@@ -13,17 +13,57 @@
 namespace belvedere {
 namespace {
 
-constexpr double kShareOutOfFrustum = 0.25;  // of the error that counts for a quadnode beside the picture
+constexpr double kShareOutOfFrustum = 0.08;  // of the error that counts for a quadnode beside the picture
 constexpr double kLeastStretch = 0.02;       // straight down is never quite straight down for all of a quadnode
 constexpr double kNearest_m = 0.5;
-constexpr float kRootPriority = 1e6F;  // roots first: without them nothing is drawn
-constexpr double kShareForPage = 0.7;  // of the bound, that a page's own remaining error may take
+constexpr float kRootPriority = 1e6F;                // roots first: without them nothing is drawn
+constexpr int kBoxLevel = 4;                         // from here on a box around the ground is worth its making
+constexpr double kLargestCurvature_m = 6'400'000.0;  // radius of curvature of the ellipsoid, at most
+constexpr double kLeastSlant = 0.03;
 constexpr double kMetresPerDegree = 111'320.0;
 constexpr float kGreatestPriority = 1e5F;
 
+// A box around the ground of a quadnode, tighter than its sphere where the quadnode is small beside the Earth.
+struct GroundBox {
+  glm::dvec3 center_ecef{};
+  LevelAxes axes;
+  glm::dvec3 half{};  // along east, north, up
+
+  explicit GroundBox(const TerrainPage& page) {
+    const GeoBox box = page.node.Box();
+    const double latitude_deg = 0.5 * (box.south_deg + box.north_deg);
+    const double longitude_deg = 0.5 * (box.west_deg + box.east_deg);
+    axes = LevelAxesAt(latitude_deg, longitude_deg);
+    const double half_radians = 0.5 * page.node.SizeDegrees() * kRadiansPerDegree;
+    const double least_latitude = std::min(std::abs(box.south_deg), std::abs(box.north_deg)) * kRadiansPerDegree;
+    const double high_m = page.max_height_m;
+    const double low_m = page.min_height_m;
+    const double radius = kLargestCurvature_m + std::max(0.0, high_m);
+    const double east = half_radians * std::cos(least_latitude) * radius;
+    const double north = half_radians * radius;
+    const double drop = (east * east + north * north) / (2.0 * kPolarRadius_m);  // of the rim below the middle
+    half = {east, north, 0.5 * (high_m - low_m + drop)};
+    center_ecef = ToEcef({latitude_deg, longitude_deg, 0.5 * (high_m + low_m - drop)});
+  }
+
+  double DistanceTo(const glm::dvec3& ecef) const {
+    const glm::dvec3 away = ecef - center_ecef;
+    const glm::dvec3 along(glm::dot(away, axes.east), glm::dot(away, axes.north), glm::dot(away, axes.up));
+    return glm::length(glm::max(glm::abs(along) - half, glm::dvec3(0)));
+  }
+  // Least of dot(point - from, direction) over the box.
+  double LeastAlong(const glm::dvec3& from, const glm::dvec3& direction) const {
+    const glm::dvec3 along(glm::dot(direction, axes.east), glm::dot(direction, axes.north),
+                           glm::dot(direction, axes.up));
+    return glm::dot(center_ecef - from, direction) - glm::dot(glm::abs(along), half);
+  }
+};
+
 struct Measure {
-  double error_scale = 0;     // see CutNode
-  double metre_px = 0;        // pixels that one metre across the line of sight spans, at the quadnode's nearest point
+  double error_scale = 0;  // see CutNode
+  double metre_px = 0;     // pixels that one metre across the line of sight spans, at the quadnode's nearest point
+  double nearest_depth_m = 0;
+  double texel_share = 1;     // of a texel's size that counts where the ground is seen at a slant
   double error_metre_px = 0;  // pixels that one metre of vertical error spans there, at most
   double share = 1;           // of what is measured counts: 1 in view, less beside it, 0 behind the horizon
 };
@@ -79,13 +119,9 @@ class Selection {
     cut_.volumes.push_back({page.center_ecef, page.radius_m});
 
     const Measure measure = MeasureOf(page);
-    // A page that only just keeps the bound with every post drawn would have to draw them all: better the finer pages,
-    // of which few posts are needed.
-    const double geometry_ratio =
-        page.error_m * measure.error_metre_px * measure.share / (kShareForPage * view_.error_px);
+    const double geometry_ratio = page.error_m * measure.error_metre_px * measure.share / GreatestError(view_.error_px);
     const double ratio = std::max(geometry_ratio, TextureRatio(node, measure));
-    if (ratio <= 1.0 || !Refine(node, measure, ratio))
-      Draw(node, page, slot, measure, geometry_ratio * kShareForPage <= 1.0);
+    if (ratio <= 1.0 || !Refine(node, measure, ratio)) Draw(node, page, slot, measure, geometry_ratio <= 1.0);
 
     cut_.records.push_back({ListRecord::Kind::kCullEnd, 0, 0, 0});
     cut_.records[begin].skip = static_cast<uint32_t>(cut_.records.size());
@@ -137,13 +173,15 @@ class Selection {
     drawn.page = &page;
     drawn.slot = slot;
     drawn.error_scale = measure.error_scale * measure.share;
+    drawn.nearest_depth_m = measure.nearest_depth_m;
     drawn.finest = finest;
     drawn.visible = measure.share >= 1.0;
     for (size_t i = 0; i < std::min(view_.image_layers.size(), size_t{kMaxImageLayers}); ++i) {
       drawn.images[i] = ChooseImage(view_.image_layers[i], node, measure);
     }
     if (drawn.visible && !finest) {
-      cut_.left_over_error_px = std::max(cut_.left_over_error_px, page.error_m * measure.error_metre_px);
+      cut_.left_over_error_px =
+          std::max(cut_.left_over_error_px, page.error_m * measure.error_metre_px / kWorstOverBound);
     }
     cut_.records.push_back({ListRecord::Kind::kDrawTerrain, static_cast<uint32_t>(cut_.nodes.size()), 1, 0});
     cut_.nodes.push_back(drawn);
@@ -161,7 +199,7 @@ class Selection {
 
   double TexelRatio(int level, const Measure& measure) const {
     const double texel_m = std::ldexp(kTreeDegrees, -level) * kMetresPerDegree / kImageInner;
-    return texel_m * measure.metre_px * measure.share / view_.texel_px;
+    return texel_m * measure.metre_px * measure.texel_share * measure.share / view_.texel_px;
   }
 
   ImageUse ChooseImage(DataType type, Quadcode node, const Measure& measure) {
@@ -211,13 +249,29 @@ class Selection {
       measure.error_metre_px = measure.error_scale;
       return measure;
     }
-    const double nearest =
-        std::max({glm::length(center) - page.radius_m, eye_height_m_ - page.max_height_m, kNearest_m});
-    const double nearest_depth = std::max(-center.z - page.radius_m, sight_.cos_corner * nearest);
+    double nearest = std::max({glm::length(center) - page.radius_m, eye_height_m_ - page.max_height_m, kNearest_m});
+    double nearest_depth = -center.z - page.radius_m;
+    if (page.node.level() >= kBoxLevel) {
+      const GroundBox box(page);
+      nearest = std::max(nearest, box.DistanceTo(matrices_.eye_ecef));
+      nearest_depth = std::max(nearest_depth, box.LeastAlong(matrices_.eye_ecef, sight_.forward_ecef));
+    }
+    nearest_depth = std::max(nearest_depth, sight_.cos_corner * nearest);
+    measure.nearest_depth_m = nearest_depth;
     measure.metre_px = matrices_.pixels_per_radian / nearest_depth;
     measure.error_scale = matrices_.pixels_per_radian * GreatestStretch(page, center, up);
     measure.error_metre_px = measure.error_scale / nearest_depth;
+    measure.texel_share = std::sqrt(GreatestSlant(page, nearest));
     return measure;
+  }
+
+  // Greatest sine of the angle under which the ground of the quadnode is seen, its slopes reckoned from its relief. A
+  // texel seen at a slant is short one way; filtering makes the picture no sharper than the mean of its two sides, the
+  // square root of this.
+  double GreatestSlant(const TerrainPage& page, double nearest_m) const {
+    const double relief_m = page.max_height_m - page.min_height_m;
+    const double size_m = page.node.SizeDegrees() * kMetresPerDegree;
+    return std::clamp((eye_height_m_ - page.min_height_m) / nearest_m + relief_m / size_m, kLeastSlant, 1.0);
   }
 
   // How far the vertical turns from the quadnode's middle to its rim, radians; and from geocentric to geodetic.

@@ -93,7 +93,8 @@ class Bisection {
         vertices_(page_.vertices.data()),
         deltas_(page_.deltas.data()),
         sight_(sight),
-        scale_(static_cast<float>(node.error_scale / error_px)),
+        scale_(static_cast<float>(node.error_scale / GreatestError(error_px))),
+        nearest_depth_(static_cast<float>(node.nearest_depth_m)),
         left_over_m_(node.finest ? 0.0F : page_.error_m),
         out_(out) {}
 
@@ -131,8 +132,9 @@ class Bisection {
     const float depth = glm::dot(away, sight_.forward);
     const float distance_squared = glm::dot(away, away);
     const float farthest = error * sight_.per_cos_corner + reach;
-    if (error > 0 && depth < error + reach && distance_squared < farthest * farthest) return true;
-    const float least_depth = std::max(depth - reach, (std::sqrt(distance_squared) - reach) / sight_.per_cos_corner);
+    if (error > nearest_depth_ && depth < error + reach && distance_squared < farthest * farthest) return true;
+    const float least_depth =
+        std::max({nearest_depth_, depth - reach, (std::sqrt(distance_squared) - reach) / sight_.per_cos_corner});
     if (least_depth > 0) worst_ = std::max(worst_, error / least_depth);
     return false;
   }
@@ -142,6 +144,7 @@ class Bisection {
   const float* const deltas_;
   const LocalSight& sight_;
   const float scale_;
+  const float nearest_depth_;
   const float left_over_m_;
   std::vector<LocalTriangle>& out_;
   float worst_ = 0;

@@ -14,6 +14,7 @@
 #include <fmt/chrono.h>
 #include <gdal_priv.h>
 #include <tbb/enumerable_thread_specific.h>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
@@ -187,12 +188,14 @@ class Builder {
     for (const OpenLayer& layer : layers_) planned += CountNodes(layer.plan);
     PageSink sink(writer);
     std::optional<Progress> progress;
-    if (options_.show_progress) progress.emplace(planned, clock_, [&sink] { return sink.bytes(); });
+    if (options_.show_progress)
+      progress.emplace(planned, clock_, [&sink] { return Progress::Written{sink.pages(), sink.bytes()}; });
     std::vector<std::unique_ptr<LayerBuilder>> builders;
     for (size_t i = 0; i < layers_.size(); ++i) {
       builders.push_back(std::make_unique<LayerBuilder>(static_cast<int>(i), layers_[i], geoid, sink,
                                                         progress ? &*progress : nullptr));
     }
+    const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(jobs_));
     tbb::task_arena arena(jobs_);
     arena.execute([&] {
       tbb::task_group trees;

@@ -13,20 +13,21 @@ namespace {
 constexpr double kLargestHeight_m = 2.0e6;
 
 // Heights of coarse levels are rounded to a power of two of millimetres that tilts no triangle by more than 20
-// microradians: most of what a page would otherwise store is rounding noise. 1 from level 10 on.
+// microradians: most of what a page would otherwise store is rounding noise. 64 mm at most, 1 from level 10 on.
 int32_t Quantum_mm(Quadcode node) {
   constexpr double kSteepest = 2e-5;
+  constexpr int kCoarsest = 6;
   const double spacing_mm = node.SizeDegrees() / kCells * kRadiansPerDegree * kEquatorialRadius_m * 1000.0;
-  return int32_t{1} << std::max(0, static_cast<int>(std::floor(std::log2(spacing_mm * kSteepest))));
+  return int32_t{1} << std::clamp(static_cast<int>(std::floor(std::log2(spacing_mm * kSteepest))), 0, kCoarsest);
 }
 
 int32_t Millimetres(double height_m, int32_t quantum_mm) {
   const double height_mm = std::clamp(height_m, -kLargestHeight_m, kLargestHeight_m) * 1000.0;
-  return quantum_mm * static_cast<int32_t>(std::lround(height_mm / quantum_mm));
+  return quantum_mm * static_cast<int32_t>(std::lrint(height_mm / quantum_mm));
 }
 
 uint8_t Byte(float value) {
-  return static_cast<uint8_t>(std::clamp(std::lround(value), 0L, 255L));
+  return static_cast<uint8_t>(std::clamp(value, 0.0f, 255.0f) + 0.5f);
 }
 
 // What is still to be covered, position by position.
@@ -44,6 +45,22 @@ struct Remaining {
   std::vector<float> shares;
 };
 
+// Colours, multiplied by the share that is covered, as straight RGBA into the rows of a page.
+void WriteTexels(const LatticeRows& lattice, const std::vector<float>& colours, const Remaining& remaining,
+                 std::vector<uint8_t>& texels) {
+  size_t i = 0;
+  for (const int row : lattice.rows) {
+    uint8_t* out = &texels[4 * static_cast<size_t>(row) * static_cast<size_t>(kImageSide)];
+    for (size_t column = 0; column < static_cast<size_t>(kImageSide); ++column, ++i, out += 4) {
+      const float alpha = 1.0f - remaining.shares[i];
+      out[3] = Byte(255.0f * alpha);
+      if (out[3] == 0) continue;
+      const float scale = alpha == 1.0f ? 1.0f : 1.0f / alpha;
+      for (size_t c = 0; c < 3; ++c) out[c] = Byte(colours[3 * i + c] * scale);
+    }
+  }
+}
+
 }  // namespace
 
 Composite::Composite(LayerKind kind, const std::vector<RasterSource*>& sources, const Geoid& geoid)
@@ -55,19 +72,14 @@ bool Composite::MayCover(const SourceSampler& sampler, const LatticeRows& lattic
   const auto [south, north] = std::minmax_element(lattice.latitudes_deg.begin(), lattice.latitudes_deg.end());
   const GeoBox& box = sampler.extent();
   if (*north < box.south_deg || *south > box.north_deg) return false;
-  return std::any_of(lattice.longitudes_deg.begin(), lattice.longitudes_deg.end(), [&](double longitude_deg) {
-    const double turns = std::ceil((box.west_deg - longitude_deg) / 360.0);
-    return longitude_deg + 360.0 * turns <= box.east_deg;
-  });
+  return std::any_of(lattice.longitudes_deg.begin(), lattice.longitudes_deg.end(),
+                     [&](double longitude_deg) { return Covers(box, longitude_deg, std::max(*south, box.south_deg)); });
 }
 
 std::vector<double> Composite::HeightsAt(const LatticeRows& lattice, double spacing_deg) {
   const size_t columns = lattice.longitudes_deg.size();
   const size_t count = columns * lattice.latitudes_deg.size();
-  std::vector<double> undulation(count);
-  for (size_t i = 0; i < count; ++i) {
-    undulation[i] = geoid_.Height(lattice.latitudes_deg[i / columns], lattice.longitudes_deg[i % columns]);
-  }
+  const std::vector<double> undulation = geoid_.Heights(lattice.latitudes_deg, lattice.longitudes_deg);
   std::vector<double> heights(count, 0.0);
   Remaining remaining(count);
   for (SourceSampler& sampler : samplers_) {
@@ -130,15 +142,7 @@ std::vector<uint8_t> Composite::Texels(Quadcode node) {
       if (used) sampler.source().SetUsed();
       if (!remaining.Any()) break;
     }
-    for (size_t i = 0; i < count; ++i) {
-      const float alpha = 1.0f - remaining.shares[i];
-      const uint8_t alpha_byte = Byte(255.0f * alpha);
-      if (alpha_byte == 0) continue;
-      const auto row = static_cast<size_t>(lattice.rows[i / lattice.longitudes_deg.size()]);
-      uint8_t* out = &texels[4 * (row * static_cast<size_t>(kImageSide) + i % lattice.longitudes_deg.size())];
-      for (size_t c = 0; c < 3; ++c) out[c] = Byte(colours[3 * i + c] / alpha);
-      out[3] = alpha_byte;
-    }
+    WriteTexels(lattice, colours, remaining, texels);
   }
   return texels;
 }

@@ -339,4 +339,10 @@ bool Overlap(const GeoBox& a, const GeoBox& b) {
   return false;
 }
 
+bool Covers(const GeoBox& box, double longitude_deg, double latitude_deg) {
+  if (latitude_deg < box.south_deg || latitude_deg > box.north_deg) return false;
+  const double turns = std::ceil((box.west_deg - longitude_deg) / 360.0);
+  return longitude_deg + 360.0 * turns <= box.east_deg;
+}
+
 }  // namespace belvedere

@@ -51,5 +51,7 @@ class Georeference {
 
 // Whether two boxes share area, whatever turn their longitudes are given in.
 bool Overlap(const GeoBox& a, const GeoBox& b);
+// Whether a position lies in the box or on its border, whatever its turn.
+bool Covers(const GeoBox& box, double longitude_deg, double latitude_deg);
 
 }  // namespace belvedere

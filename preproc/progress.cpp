@@ -10,10 +10,10 @@
 
 namespace belvedere {
 
-Progress::Progress(int64_t planned_pages, const Clock& clock, std::function<int64_t()> written_bytes)
-    : planned_pages_(std::max<int64_t>(planned_pages, 1)),
+Progress::Progress(int64_t planned, const Clock& clock, std::function<Written()> written)
+    : planned_(std::max<int64_t>(planned, 1)),
       clock_(clock),
-      written_bytes_(std::move(written_bytes)),
+      written_(std::move(written)),
       start_s_(clock.NowSeconds()),
       thread_([this] { Run(); }) {}
 
@@ -46,12 +46,12 @@ void Progress::Run() {
 void Progress::Print(bool terminal) const {
   const double elapsed_s = std::max(clock_.NowSeconds() - start_s_, 1e-3);
   const int64_t done = done_.load(std::memory_order_relaxed);
-  const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(planned_pages_));
+  const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(planned_));
   const int left_s = done > 0 ? static_cast<int>(elapsed_s * (1.0 - share) / share) : 0;
-  const std::string line =
-      fmt::format("{} of {} pages ({:.0f} %), {:.0f} pages/s, {:.1f} MB/s, {}:{:02} left", done, planned_pages_,
-                  100 * share, static_cast<double>(done) / elapsed_s,
-                  static_cast<double>(written_bytes_()) / 1e6 / elapsed_s, left_s / 60, left_s % 60);
+  const Written written = written_();
+  const std::string line = fmt::format("{:.0f} %, {} pages, {:.0f} pages/s, {:.1f} MB/s, {}:{:02} left", 100 * share,
+                                       written.pages, static_cast<double>(written.pages) / elapsed_s,
+                                       static_cast<double>(written.bytes) / 1e6 / elapsed_s, left_s / 60, left_s % 60);
   fmt::print(stderr, "{}{}{}", terminal ? "\r\033[K" : "", line, terminal ? "" : "\n");
   std::fflush(stderr);
 }

@@ -17,8 +17,11 @@ namespace belvedere {
 
 class Progress {
  public:
-  // written_bytes: what has reached the dataset so far.
-  Progress(int64_t planned_pages, const Clock& clock, std::function<int64_t()> written_bytes);
+  struct Written {
+    int64_t pages = 0, bytes = 0;
+  };
+  // planned: steps until the build is done, Done counts them. written: what has reached the dataset so far.
+  Progress(int64_t planned, const Clock& clock, std::function<Written()> written);
   ~Progress();
   void Done() { done_.fetch_add(1, std::memory_order_relaxed); }
 
@@ -26,9 +29,9 @@ class Progress {
   void Run() EXCLUDES_LOCK(mutex_);
   void Print(bool terminal) const;
 
-  const int64_t planned_pages_;
+  const int64_t planned_;
   const Clock& clock_;
-  const std::function<int64_t()> written_bytes_;
+  const std::function<Written()> written_;
   const double start_s_;
   std::atomic<int64_t> done_{0};
   Mutex mutex_;

@@ -36,12 +36,10 @@ Result<std::unique_ptr<RasterReader>> RasterReader::Open(const SourceSpec& spec,
   std::unique_ptr<RasterReader> reader(new RasterReader(spec, kind));
   auto first = reader->OpenHandle();
   if (!first.ok()) return first.status();
-  {
-    const MutexLock lock(reader->mutex_);
-    reader->handles_.push_back(std::move(*first));
-  }
+  reader->first_ = first->get();
   if (Status status = reader->Inspect(); !status.ok()) return status;
   const MutexLock lock(reader->mutex_);
+  reader->handles_.push_back(std::move(*first));
   reader->may_open_ = reader->row_by_row_ ? 0 : handles - 1;
   return reader;
 }
@@ -56,8 +54,7 @@ Result<DatasetHandle> RasterReader::OpenHandle() const {
 }
 
 Status RasterReader::Inspect() {
-  const MutexLock lock(mutex_);
-  GDALDataset& dataset = *handles_.front();
+  GDALDataset& dataset = *first_;
   width_ = dataset.GetRasterXSize();
   height_ = dataset.GetRasterYSize();
   if (dataset.GetRasterCount() < 1 || width_ < 1 || height_ < 1) {
@@ -79,14 +76,14 @@ Status RasterReader::Inspect() {
 }
 
 void RasterReader::InspectHeights() {
-  GDALRasterBand& band = *handles_.front()->GetRasterBand(1);
+  GDALRasterBand& band = *first_->GetRasterBand(1);
   const double unit = spec_.metres_per_unit ? *spec_.metres_per_unit : MetresPerUnit(band.GetUnitType());
   scale_ = band.GetScale() * unit;
   offset_ = band.GetOffset() * unit;
 }
 
 Status RasterReader::InspectColours() {
-  GDALDataset& dataset = *handles_.front();
+  GDALDataset& dataset = *first_;
   const int bands = dataset.GetRasterCount();
   for (int i = 1; i <= bands; ++i) {
     if (dataset.GetRasterBand(i)->GetColorInterpretation() == GCI_AlphaBand) alpha_band_ = i;
@@ -203,8 +200,11 @@ Status RasterReader::ReadColours(GDALDataset& dataset, const std::array<int, 4>&
       const size_t at = bands * i + (bands == 3 ? c : 0);
       const double value = is_byte ? narrow[at] : static_cast<double>(wide[at]);
       empty = empty && (!std::isfinite(value) || (nodata_ && SameNodata(value, *nodata_)));
-      const double stretched = is_byte ? value : std::isfinite(value) ? value * scale_ + offset_ : 0.0;
-      out.colours[3 * i + c] = static_cast<uint8_t>(std::clamp(std::lround(stretched), 0L, 255L));
+      if (is_byte) {
+        out.colours[3 * i + c] = narrow[at];
+      } else if (std::isfinite(value)) {
+        out.colours[3 * i + c] = static_cast<uint8_t>(std::clamp(value * scale_ + offset_, 0.0, 255.0) + 0.5);
+      }
     }
     if (empty) out.coverage[i] = 0;
     if (!palette_.empty()) {

@@ -30,7 +30,7 @@ class RasterReader {
  public:
   static Result<std::unique_ptr<RasterReader>> Open(const SourceSpec& spec, LayerKind kind, int handles);
 
-  GDALDataset& dataset() { return *handles_.front(); }  // REQUIRES: nobody reads yet
+  GDALDataset& dataset() { return *first_; }  // REQUIRES: nobody reads yet
   int width() const { return width_; }
   int height() const { return height_; }
   std::optional<double> nodata() const { return nodata_; }
@@ -55,6 +55,7 @@ class RasterReader {
 
   const SourceSpec spec_;
   const LayerKind kind_;
+  GDALDataset* first_ = nullptr;  // the first of the handles, for whoever inspects before anybody reads
   int width_ = 0, height_ = 0;
   std::optional<double> nodata_;
   double scale_ = 1, offset_ = 0;  // heights: to metres; colours: to 0..255

@@ -48,10 +48,10 @@ void ShrinkPixel(const Block& finer, const std::array<size_t, 4>& from, size_t c
       colour[c] += w * static_cast<float>(finer.colours[3 * at + c]);
   }
   if (weight <= 0 || count == 0) return;
-  out.coverage[to] = static_cast<uint8_t>(std::clamp(std::lround(weight / static_cast<float>(count)), 1L, 255L));
+  out.coverage[to] = static_cast<uint8_t>(std::clamp(weight / static_cast<float>(count) + 0.5f, 1.0f, 255.0f));
   if (!out.heights.empty()) out.heights[to] = height / weight;
   for (size_t c = 0; c < 3 && !out.colours.empty(); ++c) {
-    out.colours[3 * to + c] = static_cast<uint8_t>(std::lround(colour[c] / weight));
+    out.colours[3 * to + c] = static_cast<uint8_t>(colour[c] / weight + 0.5f);
   }
 }
 

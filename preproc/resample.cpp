@@ -58,22 +58,28 @@ AxisTaps MakeTaps(std::span<const double> positions, double shrink, Kernel kerne
   return taps;
 }
 
-template <typename Number>
-std::vector<Number> ResampleGrid(const PixelWindow& window, const AxisTaps& x, const AxisTaps& y) {
+namespace {
+
+// kSize numbers a pixel, coverage included: known here so that the sums stay in registers.
+template <typename Number, size_t kSize>
+std::vector<Number> Grid(const PixelWindow& window, const AxisTaps& x, const AxisTaps& y) {
   const size_t columns = x.first.size();
-  const size_t size = window.channels + 1;
-  const size_t line = columns * size;
+  const size_t line = columns * kSize;
+  const std::vector<Number> weights(x.weights.begin(), x.weights.end());
   // Along the rows first, those that some position needs.
   std::vector<Number> narrowed(static_cast<size_t>(y.length) * line);
   for (int row = 0; row < y.length; ++row) {
     const auto in_row = static_cast<size_t>(y.lowest + row - window.y) * static_cast<size_t>(window.width);
-    for (size_t i = 0; i < columns; ++i) {
-      Number* out = &narrowed[static_cast<size_t>(row) * line + i * size];
-      const float* in = &window.pixels[(in_row + static_cast<size_t>(std::max(0, x.first[i] - window.x))) * size];
-      for (int tap = 0; tap < x.count[i]; ++tap, in += size) {
-        const auto weight = static_cast<Number>(x.weights[i * x.stride + static_cast<size_t>(tap)]);
-        for (size_t c = 0; c < size; ++c) out[c] += weight * static_cast<Number>(in[c]);
+    Number* out = &narrowed[static_cast<size_t>(row) * line];
+    for (size_t i = 0; i < columns; ++i, out += kSize) {
+      if (x.count[i] == 0) continue;
+      const float* in = &window.pixels[(in_row + static_cast<size_t>(x.first[i] - window.x)) * kSize];
+      const Number* weight = &weights[i * x.stride];
+      Number sums[kSize] = {};
+      for (int tap = 0; tap < x.count[i]; ++tap, in += kSize) {
+        for (size_t c = 0; c < kSize; ++c) sums[c] += weight[tap] * static_cast<Number>(in[c]);
       }
+      for (size_t c = 0; c < kSize; ++c) out[c] = sums[c];
     }
   }
   std::vector<Number> result(y.first.size() * line);
@@ -88,24 +94,36 @@ std::vector<Number> ResampleGrid(const PixelWindow& window, const AxisTaps& x, c
   return result;
 }
 
-template <typename Number>
-std::vector<Number> ResamplePoints(const PixelWindow& window, const AxisTaps& x, const AxisTaps& y) {
-  const size_t size = window.channels + 1;
-  std::vector<Number> result(x.first.size() * size);
+template <typename Number, size_t kSize>
+std::vector<Number> Points(const PixelWindow& window, const AxisTaps& x, const AxisTaps& y) {
+  std::vector<Number> result(x.first.size() * kSize);
   for (size_t i = 0; i < x.first.size(); ++i) {
-    Number* out = &result[i * size];
     if (x.count[i] == 0) continue;
+    Number sums[kSize] = {};
     for (int j = 0; j < y.count[i]; ++j) {
       const auto row = static_cast<size_t>(y.first[i] + j - window.y) * static_cast<size_t>(window.width);
-      const float* in = &window.pixels[(row + static_cast<size_t>(x.first[i] - window.x)) * size];
+      const float* in = &window.pixels[(row + static_cast<size_t>(x.first[i] - window.x)) * kSize];
       const double row_weight = y.weights[i * y.stride + static_cast<size_t>(j)];
-      for (int tap = 0; tap < x.count[i]; ++tap, in += size) {
+      for (int tap = 0; tap < x.count[i]; ++tap, in += kSize) {
         const auto weight = static_cast<Number>(row_weight * x.weights[i * x.stride + static_cast<size_t>(tap)]);
-        for (size_t c = 0; c < size; ++c) out[c] += weight * static_cast<Number>(in[c]);
+        for (size_t c = 0; c < kSize; ++c) sums[c] += weight * static_cast<Number>(in[c]);
       }
     }
+    std::copy_n(sums, kSize, &result[i * kSize]);
   }
   return result;
+}
+
+}  // namespace
+
+template <typename Number>
+std::vector<Number> ResampleGrid(const PixelWindow& window, const AxisTaps& x, const AxisTaps& y) {
+  return window.channels == 1 ? Grid<Number, 2>(window, x, y) : Grid<Number, 4>(window, x, y);
+}
+
+template <typename Number>
+std::vector<Number> ResamplePoints(const PixelWindow& window, const AxisTaps& x, const AxisTaps& y) {
+  return window.channels == 1 ? Points<Number, 2>(window, x, y) : Points<Number, 4>(window, x, y);
 }
 
 template std::vector<float> ResampleGrid<float>(const PixelWindow&, const AxisTaps&, const AxisTaps&);

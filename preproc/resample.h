@@ -35,7 +35,7 @@ double KernelRadius(double shrink, Kernel kernel);
 
 struct PixelWindow {
   int x = 0, y = 0, width = 0, height = 0;
-  size_t channels = 1;  // without the coverage
+  size_t channels = 1;  // without the coverage: 1 or 3
   std::vector<float> pixels;
 };
 

@@ -12,6 +12,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWidestShrink = 64;      // pixels of a pyramid level between positions, at most
 constexpr float kLeastCoverage = 0.499f;  // of a height, for it to count; half a pixel's worth
+constexpr float kWhole = 0.9995f;         // a coverage that only rounding keeps from 1
 constexpr double kMetresPerDegree = kEquatorialRadius_m * kRadiansPerDegree;
 
 // Position on the source, or none.
@@ -53,25 +54,43 @@ SourceSampler::Scale SourceSampler::ScaleAt(double latitude_deg, double spacing_
   return scale;
 }
 
-// For a separable source: the columns' x in the first points' x and the rows' y in their own first point.
-std::vector<PixelPoint> SourceSampler::PixelsOf(const LatticeRows& lattice, size_t first_row, size_t rows) {
+SourceSampler::Positions SourceSampler::PositionsOf(const LatticeRows& lattice, size_t first_row, size_t rows) {
   const size_t columns = lattice.longitudes_deg.size();
-  std::vector<double> longitudes(columns * rows), latitudes(columns * rows);
-  for (size_t j = 0; j < rows; ++j) {
-    for (size_t i = 0; i < columns; ++i) {
-      longitudes[j * columns + i] = lattice.longitudes_deg[i];
-      latitudes[j * columns + i] = lattice.latitudes_deg[first_row + j];
-    }
-  }
-  std::vector<PixelPoint> points(columns * rows);
-  georeference_->ToPixels(longitudes, latitudes, points);
   const int width = source_.width(0);
   const int height = source_.height(0);
-  for (PixelPoint& point : points) {
-    point = {OnAxis(point.x, width), OnAxis(point.y, height)};
-    if (!georeference_->separable() && std::isnan(point.x + point.y)) point = {kNaN, kNaN};
+  Positions positions;
+  if (georeference_->separable()) {
+    for (const double longitude : lattice.longitudes_deg) {
+      positions.x.push_back(OnAxis(georeference_->ToPixel(longitude, lattice.latitudes_deg[first_row]).x, width));
+    }
+    for (size_t j = first_row; j < first_row + rows; ++j) {
+      positions.y.push_back(
+          OnAxis(georeference_->ToPixel(lattice.longitudes_deg[0], lattice.latitudes_deg[j]).y, height));
+    }
+    return positions;
   }
-  return points;
+  // What the extent, which is never too small, leaves out is spared the projection.
+  std::vector<double> longitudes, latitudes;
+  std::vector<size_t> places;
+  for (size_t j = first_row; j < first_row + rows; ++j) {
+    for (size_t i = 0; i < columns; ++i) {
+      if (!Covers(extent(), lattice.longitudes_deg[i], lattice.latitudes_deg[j])) continue;
+      longitudes.push_back(lattice.longitudes_deg[i]);
+      latitudes.push_back(lattice.latitudes_deg[j]);
+      places.push_back((j - first_row) * columns + i);
+    }
+  }
+  std::vector<PixelPoint> points(places.size());
+  georeference_->ToPixels(longitudes, latitudes, points);
+  positions.x.assign(columns * rows, kNaN);
+  positions.y.assign(columns * rows, kNaN);
+  for (size_t i = 0; i < points.size(); ++i) {
+    const double x = OnAxis(points[i].x, width), y = OnAxis(points[i].y, height);
+    if (std::isnan(x) || std::isnan(y)) continue;
+    positions.x[places[i]] = x;
+    positions.y[places[i]] = y;
+  }
+  return positions;
 }
 
 PixelWindow SourceSampler::MakeWindow(int pyramid_level, const AxisTaps& x, const AxisTaps& y, Edge edge) const {
@@ -109,27 +128,30 @@ PixelWindow SourceSampler::MakeWindow(int pyramid_level, const AxisTaps& x, cons
 }
 
 template <typename Number>
-std::vector<Number> SourceSampler::Filter(std::span<const PixelPoint> points, size_t columns, const Scale& scale,
-                                          Kernel kernel, Edge edge) {
+std::vector<Number> SourceSampler::Filter(const Positions& positions, const Scale& scale, Kernel kernel,
+                                          Edge edge) const {
+  const auto at_level = [&scale](std::vector<double> axis) {
+    for (double& position : axis) position = std::ldexp(position, -scale.pyramid_level);
+    return axis;
+  };
   const bool separable = georeference_->separable();
-  const size_t rows = points.size() / columns;
-  std::vector<double> x(separable ? columns : points.size()), y(separable ? rows : points.size());
-  for (size_t i = 0; i < x.size(); ++i) x[i] = std::ldexp(points[i].x, -scale.pyramid_level);
-  for (size_t i = 0; i < y.size(); ++i) y[i] = std::ldexp(points[separable ? i * columns : i].y, -scale.pyramid_level);
   const int period = georeference_->wraps() ? source_.width(scale.pyramid_level) : 0;
-  const AxisTaps x_taps = MakeTaps(x, scale.shrink_x, kernel, period);
-  const AxisTaps y_taps = MakeTaps(y, scale.shrink_y, kernel, 0);
-  if (x_taps.length == 0 || y_taps.length == 0) return std::vector<Number>(points.size() * (channels_ + 1));
-  const PixelWindow window = MakeWindow(scale.pyramid_level, x_taps, y_taps, edge);
-  return separable ? ResampleGrid<Number>(window, x_taps, y_taps) : ResamplePoints<Number>(window, x_taps, y_taps);
+  const AxisTaps x = MakeTaps(at_level(positions.x), scale.shrink_x, kernel, period);
+  const AxisTaps y = MakeTaps(at_level(positions.y), scale.shrink_y, kernel, 0);
+  if (x.length == 0 || y.length == 0) {
+    const size_t count = separable ? positions.x.size() * positions.y.size() : positions.x.size();
+    return std::vector<Number>(count * (channels_ + 1));
+  }
+  const PixelWindow window = MakeWindow(scale.pyramid_level, x, y, edge);
+  return separable ? ResampleGrid<Number>(window, x, y) : ResamplePoints<Number>(window, x, y);
 }
 
 // Towards the border of what is valid, the edge of the source included, the weight falls to 0 over feather_m: twice the
 // share of a tent that wide which lies on valid pixels, less the half that it has on the border itself.
-void SourceSampler::Feather(std::span<const PixelPoint> points, size_t columns, std::span<float> weights) {
+void SourceSampler::Feather(const Positions& positions, std::span<float> weights) {
   const double feather_deg = source_.spec().feather_m / kMetresPerDegree;
   const Scale scale = ScaleAt((extent().south_deg + extent().north_deg) / 2, feather_deg);
-  const std::vector<float> filtered = Filter<float>(points, columns, scale, Kernel::kTent, Edge::kEmpty);
+  const std::vector<float> filtered = Filter<float>(positions, scale, Kernel::kTent, Edge::kEmpty);
   for (size_t i = 0; i < weights.size(); ++i) {
     weights[i] *= std::clamp(2.0f * filtered[i * (channels_ + 1) + channels_] - 1.0f, 0.0f, 1.0f);
   }
@@ -144,28 +166,27 @@ Samples<Number> SourceSampler::Sample(const LatticeRows& lattice, double spacing
   samples.values.resize(columns * all_rows * channels_);
   samples.weights.resize(columns * all_rows);
   const bool heights = kind_ == LayerKind::kElevation;
-  for (size_t row = 0; row < all_rows;) {
+  const float least_coverage = heights ? kLeastCoverage : 1e-6f;
+  for (size_t row = 0, end = 0; row < all_rows; row = end) {
+    end = row + 1;
+    if (lattice.latitudes_deg[row] < extent().south_deg || lattice.latitudes_deg[row] > extent().north_deg) continue;
     // Rows of one scale go together; a separable source has only one.
     const Scale scale = ScaleAt(lattice.latitudes_deg[row], spacing_deg);
-    size_t end = row + 1;
     while (end < all_rows && (georeference_->separable() || ScaleAt(lattice.latitudes_deg[end], spacing_deg) == scale))
       ++end;
-    const std::vector<PixelPoint> points = PixelsOf(lattice, row, end - row);
-    const Kernel kernel = heights ? Kernel::kTent : Kernel::kCubic;
-    const std::vector<Number> filtered = Filter<Number>(points, columns, scale, kernel, Edge::kRepeat);
+    const Positions positions = PositionsOf(lattice, row, end - row);
+    const auto filtered = Filter<Number>(positions, scale, heights ? Kernel::kTent : Kernel::kCubic, Edge::kRepeat);
     const size_t base = row * columns;
-    for (size_t i = 0; i < points.size(); ++i) {
+    const size_t count = (end - row) * columns;
+    for (size_t i = 0; i < count; ++i) {
+      // Positions off the source have no coverage.
       const Number* in = &filtered[i * (channels_ + 1)];
       const auto coverage = static_cast<float>(in[channels_]);
-      if (std::isnan(points[i].x) || std::isnan(points[i].y) || coverage <= 0 || (heights && coverage < kLeastCoverage))
-        continue;
+      if (coverage < least_coverage) continue;
       for (size_t c = 0; c < channels_; ++c) samples.values[(base + i) * channels_ + c] = in[c] / in[channels_];
-      samples.weights[base + i] = heights ? 1.0f : std::min(1.0f, coverage);
+      samples.weights[base + i] = heights || coverage > kWhole ? 1.0f : coverage;
     }
-    if (source_.spec().feather_m > 0) {
-      Feather(points, columns, {&samples.weights[base], points.size()});
-    }
-    row = end;
+    if (source_.spec().feather_m > 0) Feather(positions, {&samples.weights[base], count});
   }
   return samples;
 }

@@ -42,13 +42,18 @@ class SourceSampler {
   };
   enum class Edge { kRepeat, kEmpty };  // what lies around the source
 
+  // Pixel coordinates at level 0, NaN off the source: of the columns and of the rows where the source is separable,
+  // else of every position.
+  struct Positions {
+    std::vector<double> x, y;
+  };
+
   Scale ScaleAt(double latitude_deg, double spacing_deg);
-  std::vector<PixelPoint> PixelsOf(const LatticeRows& lattice, size_t first_row, size_t rows);
+  Positions PositionsOf(const LatticeRows& lattice, size_t first_row, size_t rows);
   PixelWindow MakeWindow(int pyramid_level, const AxisTaps& x, const AxisTaps& y, Edge edge) const;
   template <typename Number>
-  std::vector<Number> Filter(std::span<const PixelPoint> points, size_t columns, const Scale& scale, Kernel kernel,
-                             Edge edge);
-  void Feather(std::span<const PixelPoint> points, size_t columns, std::span<float> weights);
+  std::vector<Number> Filter(const Positions& positions, const Scale& scale, Kernel kernel, Edge edge) const;
+  void Feather(const Positions& positions, std::span<float> weights);
 
   RasterSource& source_;
   const LayerKind kind_;

@@ -33,17 +33,25 @@ float RoundedDown(double value) {
 
 }  // namespace
 
-double DistanceFromParent(const ElevationPage& parent, const ElevationPage& child, int which) {
+std::array<double, ErrorBlocks{}.size()> DistanceFromParent(const ElevationPage& parent, const ElevationPage& child,
+                                                            int which) {
   const int west = which % 2 * kCells;
   const int south = which / 2 * kCells;
-  int64_t largest = 0;
-  for (int row = 0; row < kPosts; ++row) {
-    for (int column = 0; column < kPosts; ++column) {
-      const int64_t twice = 2 * int64_t{child.at(column, row)} - TwiceHeight(parent, west + column, south + row);
-      largest = std::max(largest, std::abs(twice));
+  std::array<double, ErrorBlocks{}.size()> distances{};
+  for (int block = 0; block < kErrorBlocks * kErrorBlocks; ++block) {
+    const int first_row = block / kErrorBlocks * kBlockCells;
+    const int first_column = block % kErrorBlocks * kBlockCells;
+    int64_t largest = 0;
+    // A post on the line between blocks belongs to both.
+    for (int row = first_row; row <= first_row + kBlockCells; ++row) {
+      for (int column = first_column; column <= first_column + kBlockCells; ++column) {
+        const int64_t twice = 2 * int64_t{child.at(column, row)} - TwiceHeight(parent, west + column, south + row);
+        largest = std::max(largest, std::abs(twice));
+      }
     }
+    distances[static_cast<size_t>(block)] = static_cast<double>(largest) / 2000.0;
   }
-  return static_cast<double>(largest) / 2000.0;
+  return distances;
 }
 
 void BoundPage(ElevationPage& page, const std::array<std::shared_ptr<const ElevationPage>, 4>* children) {
@@ -57,13 +65,21 @@ void BoundPage(ElevationPage& page, const std::array<std::shared_ptr<const Eleva
   page.min_m = RoundedDown(lowest / 1000.0);
   page.max_m = RoundedUp(highest / 1000.0);
   page.error_m = 0;
+  page.block_errors_m.fill(0);
   if (children == nullptr) return;
   for (int which = 0; which < 4; ++which) {
     const ElevationPage& child = *(*children)[static_cast<size_t>(which)];
     page.min_m = std::min(page.min_m, child.min_m);
     page.max_m = std::max(page.max_m, child.max_m);
-    const double error_m = static_cast<double>(child.error_m) + DistanceFromParent(page, child, which);
-    page.error_m = std::max(page.error_m, RoundedUp(error_m));
+    const auto distances = DistanceFromParent(page, child, which);
+    for (size_t block = 0; block < distances.size(); ++block) {
+      // Two by two blocks of the child lie under one of the parent.
+      const size_t x = (static_cast<size_t>(which) % 2 * kErrorBlocks + block % kErrorBlocks) / 2;
+      const size_t y = (static_cast<size_t>(which) / 2 * kErrorBlocks + block / kErrorBlocks) / 2;
+      float& own = page.block_errors_m[y * kErrorBlocks + x];
+      own = std::max(own, RoundedUp(static_cast<double>(child.block_errors_m[block]) + distances[block]));
+      page.error_m = std::max(page.error_m, own);
+    }
   }
 }
 

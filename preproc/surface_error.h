@@ -16,11 +16,13 @@
 
 namespace belvedere {
 
-// Largest vertical distance, in metres, between the parent's triangles and the posts of its child `which` (Quadcode).
-double DistanceFromParent(const ElevationPage& parent, const ElevationPage& child, int which);
+// Largest vertical distance, in metres, between the parent's triangles and the posts of its child `which` (Quadcode),
+// for each block of the child.
+std::array<double, ErrorBlocks{}.size()> DistanceFromParent(const ElevationPage& parent, const ElevationPage& child,
+                                                            int which);
 
-// Fills min_m, max_m and error_m of a page: over its posts, and all that is finer where there are children (all four,
-// with theirs already filled).
+// Fills min_m, max_m, block_errors_m and error_m of a page: over its posts, and all that is finer where there are
+// children (all four, with theirs already filled).
 void BoundPage(ElevationPage& page, const std::array<std::shared_ptr<const ElevationPage>, 4>* children);
 
 // The share of probes (ProbeLattice) that lie further than tolerance_m from the page's bilinear surface.

@@ -49,7 +49,8 @@ GpuPages::Pool GpuPages::PoolOf(const PagePin& pin) {
     case PageKind::kModel: return {model_slots_, "model_slots"};
     case PageKind::kElevation: break;
   }
-  BELVEDERE_CHECK(!"elevation pages are not drawn");
+  // Elevation is not drawn; nobody may ask for it.
+  BELVEDERE_CHECK(KindOf(pin.key().type) != PageKind::kElevation);
   return {terrain_, ""};
 }
 

@@ -22,7 +22,8 @@ std::string LengthText(double metres) {
   if (size < 10) return fmt::format("{:.2f} m", metres);
   if (size < 10'000) return fmt::format("{:.0f} m", metres);
   if (size < 1e6) return fmt::format("{:.1f} km", metres / 1000);
-  return fmt::format("{} {:03} km", static_cast<int>(metres / 1e6), static_cast<int>(size / 1000) % 1000);
+  const long kilometres = std::lround(metres / 1000);
+  return fmt::format("{} {:03} km", kilometres / 1000, std::abs(kilometres % 1000));
 }
 
 std::vector<std::string> HudLines(const HudFacts& facts) {

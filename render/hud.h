@@ -29,7 +29,7 @@ struct HudFacts {
 
 // Latin-1 lines.
 std::vector<std::string> HudLines(const HudFacts& facts);
-// "850 m", "12.3 km", "12 345 km"
+// "850 m", "12.3 km", "12 346 km"
 std::string LengthText(double metres);
 void AddHud(const std::vector<std::string>& lines, OverlayBatch& batch);
 

@@ -55,7 +55,8 @@ class Renderer {
   void DrawFrame(FrameRecorder& recorder, Context& context);
 
   // Draws the lists that the last frame drew once more, and reads them back: at the moment of the newest parameters, so
-  // that a view that stands still gives the same picture every time, or at the last frame's.
+  // that a view that stands still gives the same picture every time, or at the last frame's, which is where moving
+  // objects were seen last.
   enum class Moment { kOfParameters, kOfLastFrame };
   Result<Picture> Capture(ViewId id, Moment moment);
 

@@ -14,6 +14,8 @@ namespace {
 
 const glm::dvec3 kAxes{kEquatorialRadius_m, kEquatorialRadius_m, kPolarRadius_m};
 
+constexpr double kScaleHeight_m = 8000.0;  // as in shaders/atmosphere.glsl
+
 double SmoothStep(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);
@@ -24,7 +26,8 @@ double SmoothStep(double from, double to, double x) {
 ViewBlock MakeViewBlock(const ViewParameters& view, const ViewMatrices& matrices, const glm::dvec3& sun_ecef) {
   ViewBlock block{};
   const Geodetic eye = ToGeodetic(matrices.eye_ecef);
-  block.sun_ecef = glm::vec4(glm::vec3(sun_ecef), 0.0F);
+  block.sun_ecef =
+      glm::vec4(glm::vec3(sun_ecef), static_cast<float>(std::exp(-std::max(eye.height_m, 0.0) / kScaleHeight_m)));
   block.eye_scaled = glm::vec4(glm::vec3(matrices.eye_ecef / kAxes), static_cast<float>(eye.height_m));
   block.eye_up_ecef = glm::vec4(glm::vec3(UpAt(eye.latitude_deg, eye.longitude_deg)),
                                 static_cast<float>(glm::length(matrices.eye_ecef)));
@@ -53,10 +56,9 @@ FrameRow MakeFrameRow(const Frame& frame, const glm::dmat4& clip_from_ecef) {
   return row;
 }
 
-// The same formulas, in the same order, as shaders/terrain.vert.glsl.
+// The formulas of shaders/terrain.vert.glsl, without the reddening of a low sun.
 Daylight DaylightAt(const glm::dvec3& position_ecef, const ViewMatrices& matrices, const glm::dvec3& sun_ecef) {
-  constexpr double kScaleHeight_m = 8000.0;
-  constexpr double kDepthPerMetre = 0.10 * 0.5 / kScaleHeight_m;
+  constexpr double kDepthPerMetre = 0.12 * 0.5 / kScaleHeight_m;
   const Geodetic here = ToGeodetic(position_ecef);
   const Geodetic eye = ToGeodetic(matrices.eye_ecef);
   const glm::dvec3 up = UpAt(here.latitude_deg, here.longitude_deg);
@@ -66,9 +68,9 @@ Daylight DaylightAt(const glm::dvec3& position_ecef, const ViewMatrices& matrice
   const double climb = (eye.height_m - here.height_m) / kScaleHeight_m;
   const double mean_share = std::abs(climb) < 0.05 ? 1.0 : (1.0 - std::exp(-climb)) / climb;
   const double rise = glm::dot(up, to_eye) / distance_m;
-  const double path_m = std::min(distance_m * mean_share, kScaleHeight_m / (std::max(rise, 0.0) + 0.03));
+  const double path_m = std::min(distance_m * mean_share, kScaleHeight_m / (std::max(rise, 0.0) + 0.012));
   const double depth = kDepthPerMetre * std::exp(-std::max(here.height_m, 0.0) / kScaleHeight_m) * path_m;
-  const glm::dvec3 scatter(0.42, 0.98, 2.30);
+  const glm::dvec3 scatter(0.70, 1.00, 1.60);
   const glm::dvec3 airlight(0.80, 0.88, 0.97);
   const glm::dvec3 veil = airlight * (1.0 - glm::exp(-depth * scatter));
   Daylight light;

@@ -167,22 +167,39 @@ void ForEachPost(int level, const Visit& visit) {
   }
 }
 
+// The most of the blocks that the four cells around a post lie in.
+float ErrorAround(Post post, const ErrorBlocks& errors_m) {
+  float most = 0;
+  for (int row = std::max(post.row - 1, 0); row <= std::min(post.row, kCells - 1); ++row) {
+    for (int column = std::max(post.column - 1, 0); column <= std::min(post.column, kCells - 1); ++column) {
+      most = std::max(most, errors_m[static_cast<size_t>(row / kBlockCells * kErrorBlocks + column / kBlockCells)]);
+    }
+  }
+  return most;
+}
+
 }  // namespace
 
-std::vector<float> DeltaValues(std::span<const TerrainVertex> vertices, float error_m) {
+std::vector<float> DeltaValues(std::span<const TerrainVertex> vertices, const ErrorBlocks& errors_m) {
   BELVEDERE_CHECK(vertices.size() == kVerticesPerPage);
   const Surface surface(vertices);
   std::vector<float> deltas(kVerticesPerPage, 0.0F);
+  std::vector<float> left_out(kVerticesPerPage, 0.0F);  // most of errors_m under the triangles that a post splits
   // From the finest level up, so that children are known before what they depend on.
   for (int level = kBisectionLevels - 1; level >= 0; --level) {
     ForEachPost(level, [&](Post post) {
-      float delta = std::sqrt(OwnError(surface, post, level)) + error_m;
-      if (level < kBisectionLevels - 1) {
+      const auto index = static_cast<size_t>(post.index());
+      float delta = 0;
+      if (level == kBisectionLevels - 1) {
+        left_out[index] = ErrorAround(post, errors_m);
+      } else {
         for (const Post child : ChildrenOf(post)) {
-          if (child.inside()) delta = std::max(delta, deltas[static_cast<size_t>(child.index())]);
+          if (!child.inside()) continue;
+          delta = std::max(delta, deltas[static_cast<size_t>(child.index())]);
+          left_out[index] = std::max(left_out[index], left_out[static_cast<size_t>(child.index())]);
         }
       }
-      deltas[static_cast<size_t>(post.index())] = delta;
+      deltas[index] = std::max(delta, std::sqrt(OwnError(surface, post, level)) + left_out[index]);
     });
   }
   // The corners split nothing and are always drawn; all else depends on them.

@@ -14,8 +14,9 @@
 
 namespace belvedere {
 
-// vertices: kVerticesPerPage. error_m: what the page leaves out with every post drawn; added to every delta value.
-std::vector<float> DeltaValues(std::span<const TerrainVertex> vertices, float error_m);
+// vertices: kVerticesPerPage. errors_m: what the page leaves out with every post drawn, block by block; the most of the
+// blocks that a post's triangles touch is added to its delta value.
+std::vector<float> DeltaValues(std::span<const TerrainVertex> vertices, const ErrorBlocks& errors_m);
 
 // For each level of bisection, a distance within which all posts lie that depend on one of that level.
 std::array<float, kBisections> ReachOfLevels(std::span<const TerrainVertex> vertices);

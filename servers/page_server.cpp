@@ -14,7 +14,7 @@ namespace {
 
 // Where the system refuses, the thread runs as any other: slower frames, no other harm.
 void YieldToTheDisplay() {
-  constexpr int kNiceness = 10;
+  constexpr int kNiceness = 4;
   const sched_param none{};
   pthread_setschedparam(pthread_self(), SCHED_BATCH, &none);
   setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);

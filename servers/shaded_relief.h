@@ -8,9 +8,9 @@
 // cell to cell. A texel in the gutter has the value that the neighbour has there, but for the outermost row, for which
 // the apron would have to be one post wider: it takes the slope of the outermost cell.
 //
-// Coarse levels have gentle slopes, as their posts lie far apart; their slopes are raised by the power 0.7 of the distance
-// between posts over 400 m, so that continents show relief from space, as on a printed map.
-// Under the sea slopes count for less: the eye expects an even ocean, and a hint of the ridges is enough.
+// Coarse levels have gentle slopes, as their posts lie far apart; their slopes are raised by the power 0.7 of the
+// distance between posts over 400 m, so that continents show relief from space, as on a printed map. Under the sea
+// slopes count for less: the eye expects an even ocean, and a hint of the ridges is enough.
 //
 // Threads: pure.
 #pragma once

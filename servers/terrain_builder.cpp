@@ -151,10 +151,15 @@ std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input) {
   const HeightField field = SampleHeights(input.node, input.heights, input.heights_node, input.exaggeration);
   const bool interpolated = input.heights != nullptr && input.heights_node != input.node && !input.finer_exists;
 
-  double error_m = 0;
+  ErrorBlocks errors_m{};
   if (input.finer_exists) {
-    error_m = CellSagitta(input.node);
-    if (input.heights != nullptr) error_m += static_cast<double>(input.heights->error_m) * input.exaggeration;
+    errors_m.fill(static_cast<float>(CellSagitta(input.node)));
+    for (size_t block = 0; input.heights != nullptr && block < errors_m.size(); ++block) {
+      // Blocks of an ancestor's heights are not this quadnode's: then the worst of them holds.
+      const bool own = input.heights_node == input.node;
+      errors_m[block] += (own ? input.heights->block_errors_m[block] : input.heights->error_m) *
+                         static_cast<float>(input.exaggeration);
+    }
   }
   auto [low, high] = std::minmax_element(field.height_m.begin(), field.height_m.end());
   double min_height_m = *low;
@@ -167,8 +172,8 @@ std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input) {
   auto page = std::make_unique<TerrainPage>();
   page->node = input.node;
   page->vertices = VerticesOf(input.node, field);
-  page->error_m = static_cast<float>(error_m);
-  page->deltas = DeltaValues(page->vertices, page->error_m);
+  page->error_m = *std::max_element(errors_m.begin(), errors_m.end());
+  page->deltas = DeltaValues(page->vertices, errors_m);
   page->reach_m = ReachOfLevels(page->vertices);
   page->min_height_m = static_cast<float>(min_height_m);
   page->max_height_m = static_cast<float>(max_height_m);

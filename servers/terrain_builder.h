@@ -9,7 +9,7 @@
 //
 // Delta values. The delta value of a post that splits triangles at level l (bisection.h) is the largest distance of any
 // post within those triangles from the plane of the triangle, at the same column and row; raised to that of the posts
-// that depend on it, and by what the page itself leaves out, error_m. Distances are cartesian, so they know of the
+// that depend on it, and by what the page itself leaves out there. Distances are cartesian, so they know of the
 // Earth's curvature. Every deviation that a triangle can show at a post is thus bounded by the delta value of the post
 // that would split it.
 //

@@ -10,7 +10,7 @@ void main() {
   float climb = dot(ray, eye_up_ecef.xyz) * shrink;
   float along_sun = dot(ray, sun_ecef.xyz) * shrink;
   float sun_at_eye = dot(eye_up_ecef.xyz, sun_ecef.xyz);
-  float density = Density(eye_scaled.w);
+  float density = sun_ecef.w;
   float depth = density / (abs(climb) + kCurve);
   float sun_sine = sun_at_eye;
   if (climb < 0.0) {
@@ -21,7 +21,7 @@ void main() {
     sun_sine = (sun_at_eye - climb * along_sun) / sine;
   }
   float day = DaySky(sun_sine);
-  colour = Airlight(kZenithDepth * depth) * day;
+  colour = Airlight(kZenithDepth * depth, kScatter) * SunColour(depth, sun_sine) * day;
   // The sun: a disc half a degree wide, and the light that air scatters around it.
   float off_sun = 1.0 - along_sun;
   float glow = 0.00004 / (off_sun + 0.00006);

@@ -78,15 +78,15 @@ void main() {
   float density = Density(height_m);
   float mean_share = abs(climb) < 0.05 ? 1.0 : (1.0 - exp2(-1.442695 * climb)) / climb;
   float rise = dot(up, to_eye) * kEarthRadius_m / max(distance_m, 1.0);
-  float path_m = min(distance_m * mean_share, kScaleHeight_m / (max(rise, 0.0) + 0.03));
+  float path_m = min(distance_m * mean_share, kScaleHeight_m / (max(rise, 0.0) + 0.012));
   float depth = kGroundShare * kZenithDepth / kScaleHeight_m * density * path_m;
-  vec3 veil = Airlight(depth);
+  vec3 veil = Airlight(depth, kGroundScatter);
 #if OVERLAYS == 1
   day *= 2.0;                                  // an overlay of 0.5 leaves the colour as it is
 #elif OVERLAYS == 2
   day *= 4.0;
 #endif
-  shade = vec4(day * (1.0 - veil.g), veil * DaySky(sun_sine));
+  shade = vec4(day * (1.0 - veil.g), veil * SunColour(8.0 * depth, sun_sine) * DaySky(sun_sine));
 
   uv01 = vec4(ImageCoordinate(draws[draw_number].image[0], local), ImageCoordinate(draws[draw_number].image[1], local));
 #if LAYER2 != 0

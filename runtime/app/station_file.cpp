@@ -113,6 +113,19 @@ FeedSpec ReadFeed(SettingsTable& table) {
   return feed;
 }
 
+void ReadRender(SettingsTable& table, RenderOptions& render) {
+  constexpr int64_t kMostSlots = 1 << 16;
+  Assign(table.Number("max_fps", 0, 1000), render.max_fps);
+  Assign(table.Number("upload_ms", 0.1, 1000), render.upload_budget_ms);
+  Assign(table.Integer("terrain_slots", 64, kMostSlots), render.terrain_slots);
+  Assign(table.Integer("colour_slots", 33, kMostSlots), render.colour_slots);
+  Assign(table.Integer("overlay_slots", 33, kMostSlots), render.overlay_slots);
+  Assign(table.Integer("model_slots", 1, kMostSlots), render.model_slots);
+  Assign(table.Integer("samples", -1, 16), render.samples);
+  Assign(table.String("font"), render.font_path);
+  table.CheckKeys();
+}
+
 void ReadKeys(SettingsTable& table, StationSpec& station) {
   station.keys = table.AllStrings();
   KeyMap keys;
@@ -154,9 +167,9 @@ Result<StationSpec> ParseStation(std::string_view text, const std::string& name,
   if (const auto models = root.String("models")) station.models = Resolved(*models, folder);
   Assign(root.Integer("cache_MiB", 16, 1 << 20), station.cache_MiB);
   Assign(root.Number("exaggeration", 0.1, 100), station.exaggeration);
-  Assign(root.Number("max_fps", 0, 1000), station.max_fps);
   ReadTime(root, station);
   if (auto feed = root.Table("feed")) station.feed = ReadFeed(*feed);
+  if (auto render = root.Table("render")) ReadRender(*render, station.render);
   if (auto keys = root.Table("keys")) ReadKeys(*keys, station);
   ReadWindows(root, station);
   root.CheckKeys();

@@ -4,6 +4,7 @@
 // Threads: values.
 #pragma once
 
+#include "render/render_options.h"
 #include "runtime/app/overview.h"
 #include "runtime/app/target.h"
 #include "runtime/app/tether.h"
@@ -57,7 +58,7 @@ struct StationSpec {
   int64_t cache_MiB = 512;
   double exaggeration = 1;
   std::optional<double> utc_s;  // simulated time at the start; nullopt: the real time
-  double max_fps = 60;
+  RenderOptions render;
   FeedSpec feed;
   std::vector<WindowSpec> windows;
   std::vector<std::pair<std::string, std::string>> keys;  // key -> command in its written form

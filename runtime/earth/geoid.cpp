@@ -75,23 +75,46 @@ Result<std::shared_ptr<const Geoid>> Geoid::LoadEgm96() {
   return Status::Error("egm96_15.gtx: the geoid grid is in none of PROJ's folders; install the package proj-data");
 }
 
-double Geoid::Height(double latitude_deg, double longitude_deg) const {
+Geoid::Place Geoid::PlaceOfLatitude(double latitude_deg) const {
+  const double y = std::clamp((latitude_deg - south_deg_) / latitude_step_deg_, 0.0, static_cast<double>(rows_ - 1));
+  const int row = std::min(static_cast<int>(y), rows_ - 2);
+  return {static_cast<size_t>(row), static_cast<size_t>(row) + 1, y - row};
+}
+
+Geoid::Place Geoid::PlaceOfLongitude(double longitude_deg) const {
   double turns = (longitude_deg - west_deg_) / 360.0;
   turns -= std::floor(turns);
   const double x = turns * 360.0 / longitude_step_deg_;
-  const double y = std::clamp((latitude_deg - south_deg_) / latitude_step_deg_, 0.0, static_cast<double>(rows_ - 1));
-  const int row = std::min(static_cast<int>(y), rows_ - 2);
   const int column = std::min(static_cast<int>(x), columns_ - 1);
   const int next = column + 1 < columns_ ? column + 1 : 0;  // a global grid closes on itself
-  const double fx = x - column;
-  const double fy = y - row;
-  const auto at = [this](int r, int c) {
-    return static_cast<double>(
-        heights_m_[static_cast<size_t>(r) * static_cast<size_t>(columns_) + static_cast<size_t>(c)]);
+  return {static_cast<size_t>(column), static_cast<size_t>(next), x - column};
+}
+
+double Geoid::Interpolate(const Place& row, const Place& column) const {
+  const float* south = &heights_m_[row.first * static_cast<size_t>(columns_)];
+  const float* north = &heights_m_[row.second * static_cast<size_t>(columns_)];
+  const auto along = [&column](const float* line) {
+    return static_cast<double>(line[column.first]) * (1 - column.fraction) +
+           static_cast<double>(line[column.second]) * column.fraction;
   };
-  const double south = at(row, column) * (1 - fx) + at(row, next) * fx;
-  const double north = at(row + 1, column) * (1 - fx) + at(row + 1, next) * fx;
-  return south * (1 - fy) + north * fy;
+  return along(south) * (1 - row.fraction) + along(north) * row.fraction;
+}
+
+double Geoid::Height(double latitude_deg, double longitude_deg) const {
+  return Interpolate(PlaceOfLatitude(latitude_deg), PlaceOfLongitude(longitude_deg));
+}
+
+std::vector<double> Geoid::Heights(std::span<const double> latitudes_deg,
+                                   std::span<const double> longitudes_deg) const {
+  std::vector<Place> columns;
+  for (const double longitude_deg : longitudes_deg) columns.push_back(PlaceOfLongitude(longitude_deg));
+  std::vector<double> heights_m;
+  heights_m.reserve(latitudes_deg.size() * columns.size());
+  for (const double latitude_deg : latitudes_deg) {
+    const Place row = PlaceOfLatitude(latitude_deg);
+    for (const Place& column : columns) heights_m.push_back(Interpolate(row, column));
+  }
+  return heights_m;
 }
 
 }  // namespace belvedere

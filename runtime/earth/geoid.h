@@ -8,6 +8,7 @@
 #include "runtime/base/status.h"
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,20 @@ class Geoid {
 
   // Any longitude; latitude [-90, 90].
   double Height(double latitude_deg, double longitude_deg) const;
+  // Every latitude with every longitude, row by row: what Height gives, to the bit.
+  std::vector<double> Heights(std::span<const double> latitudes_deg, std::span<const double> longitudes_deg) const;
   const std::string& path() const { return path_; }
 
  private:
+  // Between two rows or columns of the grid.
+  struct Place {
+    size_t first = 0, second = 0;
+    double fraction = 0;
+  };
+  Place PlaceOfLatitude(double latitude_deg) const;
+  Place PlaceOfLongitude(double longitude_deg) const;
+  double Interpolate(const Place& row, const Place& column) const;
+
   std::string path_;
   double south_deg_ = 0, west_deg_ = 0, latitude_step_deg_ = 1, longitude_step_deg_ = 1;
   int rows_ = 0, columns_ = 0;

@@ -88,10 +88,11 @@ class LmdbWriter final : public DatasetWriter {
   }
 
   Status Problem(int rc) const {
-    if (rc == ENOSPC || rc == EFBIG || rc == EDQUOT) {
+    // LMDB reports a write that the disk took only a part of as EIO.
+    if (rc == ENOSPC || rc == EFBIG || rc == EDQUOT || rc == EIO) {
       return Status::Error(
-          "{}: the disk is full ({}); free some space and build again, what was at {} before is unchanged", partial_,
-          mdb_strerror(rc), path_);
+          "{}: the disk is full{} ({}); free some space and build again, what was at {} before is unchanged", partial_,
+          rc == EIO ? " or failing" : "", mdb_strerror(rc), path_);
     }
     return Status::Error("{}: cannot write the dataset: {}; what was at {} before is unchanged", partial_,
                          mdb_strerror(rc), path_);

@@ -48,11 +48,17 @@ class Page {
 inline constexpr int kApron = 2;
 inline constexpr int kElevationSide = kPosts + 2 * kApron;  // 133
 
+// What finer pages add is kept for blocks of 8 x 8 cells, so that one cliff does not make the whole page look coarse.
+inline constexpr int kErrorBlocks = 16;                 // along each side
+inline constexpr int kBlockCells = kCells / kErrorBlocks;
+using ErrorBlocks = std::array<float, static_cast<size_t>(kErrorBlocks) * kErrorBlocks>;  // row by row
+
 struct ElevationPage final : Page {
   std::vector<int32_t> heights_mm;  // kElevationSide^2
   float min_m = 0, max_m = 0;       // over this page's posts and all finer pages under it
   // No point of any finer page under this one lies further, vertically, from this page's own full-resolution
-  // triangles; 0 where nothing is finer.
+  // triangles; 0 where nothing is finer. block_errors_m says it of each block, error_m of them all.
+  ErrorBlocks block_errors_m{};
   float error_m = 0;
 
   // Post (column, row), each -kApron .. kPosts - 1 + kApron.
@@ -99,7 +105,7 @@ struct TerrainPage final : Page {
   std::vector<TerrainVertex> vertices;  // kVerticesPerPage
   // Delta value of each post: an upper bound, in metres, of the distance between the full-resolution surface and the
   // drawn one near the post if the post and all that depend on it are left out. Never less than that of a post that
-  // depends on it; never less than error_m.
+  // depends on it; what finer pages add near the post is part of it.
   std::vector<float> deltas;  // kVerticesPerPage
   // Every post that depends on one of bisection level l lies within reach_m[l] of it; decreasing.
   std::array<float, kBisections> reach_m{};

@@ -18,7 +18,8 @@ constexpr size_t kCheckedHeaderBytes = 16;
 constexpr int kElevationZstdLevel = 3;
 constexpr int kImageZstdLevel = 1;
 constexpr size_t kHeights = static_cast<size_t>(kElevationSide) * static_cast<size_t>(kElevationSide);
-constexpr size_t kElevationRawBytes = 3 * sizeof(float) + 4 * kHeights;
+constexpr size_t kElevationNumbers = 3 + ErrorBlocks{}.size();
+constexpr size_t kElevationRawBytes = kElevationNumbers * sizeof(float) + 4 * kHeights;
 
 using Crc32cTables = std::array<std::array<uint32_t, 256>, 8>;
 
@@ -177,12 +178,13 @@ std::vector<uint8_t> EncodeElevation(const ElevationPage& page) {
   BELVEDERE_CHECK(page.heights_mm.size() == kHeights);
   constexpr size_t kSide = static_cast<size_t>(kElevationSide);
   std::vector<uint8_t> raw(kElevationRawBytes);
-  const float numbers[3] = {page.min_m, page.max_m, page.error_m};
-  for (size_t i = 0; i < 3; ++i) {
+  std::array<float, kElevationNumbers> numbers{page.min_m, page.max_m, page.error_m};
+  std::copy(page.block_errors_m.begin(), page.block_errors_m.end(), numbers.begin() + 3);
+  for (size_t i = 0; i < numbers.size(); ++i) {
     const auto bits = std::bit_cast<uint32_t>(numbers[i]);
     for (size_t byte = 0; byte < 4; ++byte) raw[4 * i + byte] = static_cast<uint8_t>(bits >> (8 * byte));
   }
-  uint8_t* planes = raw.data() + sizeof(numbers);
+  uint8_t* planes = raw.data() + kElevationNumbers * sizeof(float);
   for (size_t row = 0; row < kSide; ++row) {
     uint32_t step_before = 0;
     for (size_t column = 0; column < kSide; ++column) {
@@ -207,8 +209,11 @@ Result<std::shared_ptr<ElevationPage>> DecodeElevation(std::span<const uint8_t> 
   page->min_m = std::bit_cast<float>(GetU32(raw->data()));
   page->max_m = std::bit_cast<float>(GetU32(raw->data() + 4));
   page->error_m = std::bit_cast<float>(GetU32(raw->data() + 8));
+  for (size_t i = 0; i < page->block_errors_m.size(); ++i) {
+    page->block_errors_m[i] = std::bit_cast<float>(GetU32(raw->data() + 4 * (3 + i)));
+  }
   page->heights_mm.resize(kHeights);
-  const uint8_t* planes = raw->data() + 3 * sizeof(float);
+  const uint8_t* planes = raw->data() + kElevationNumbers * sizeof(float);
   for (size_t row = 0; row < kSide; ++row) {
     uint32_t step = 0;
     for (size_t column = 0; column < kSide; ++column) {

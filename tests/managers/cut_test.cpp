@@ -48,7 +48,7 @@ class FakePages final : public PageAccess {
       }
     }
     page->max_height_m = 1000;
-    page->error_m = static_cast<float>(std::ldexp(1000.0, -node.level()));
+    page->error_m = static_cast<float>(std::ldexp(3000.0, -node.level()));
     return page;
   }
   std::map<Quadcode, std::unique_ptr<TerrainPage>> pages_;

@@ -151,7 +151,7 @@ TEST(SurfaceMesh, DrawsEveryPostWhoseErrorIsOverTheBound) {
         const TerrainVertex& v = node.page->vertices[post];
         const glm::dvec3 away = frame.ToEcef({v.x, v.y, v.z}) - eye;
         const double depth = std::max(-glm::dot(away, glm::normalize(eye)), 0.7 * glm::length(away));
-        if (node.page->deltas[post] * node.error_scale / depth <= error_px * 1.001) continue;
+        if (node.page->deltas[post] * node.error_scale / depth <= GreatestError(error_px) * 1.001) continue;
         ++over;
         ASSERT_TRUE(drawn.contains(static_cast<uint32_t>(node.slot) * kVerticesPerPage + static_cast<uint32_t>(post)));
       }

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <random>
@@ -93,6 +94,7 @@ TEST(BuildFailure, AFullDiskIsSaidAndLeavesThePreviousDataset) {
     if (setrlimit(RLIMIT_FSIZE, &limit) != 0) return 2;
     const auto report = BuildFrom(folder, "large.tif");
     if (report.ok()) return 3;
+    std::fprintf(stderr, "%s\n", report.message().c_str());
     return report.message().find("disk is full") != std::string::npos &&
                    report.message().find("unchanged") != std::string::npos
                ? 0

@@ -15,6 +15,8 @@ ElevationPage Hills(unsigned seed) {
   page.min_m = -12.5f;
   page.max_m = 4321.25f;
   page.error_m = 7.75f;
+  for (size_t block = 0; block < page.block_errors_m.size(); ++block)
+    page.block_errors_m[block] = 0.25f * static_cast<float>(block);
   for (int i = 0; i < kElevationSide * kElevationSide; ++i) {
     page.heights_mm.push_back(static_cast<int32_t>(random() % 9000000) - 11000000);
   }
@@ -45,6 +47,7 @@ TEST(PageCodec, ElevationComesBackToTheBit) {
   EXPECT_EQ((*back)->min_m, page.min_m);
   EXPECT_EQ((*back)->max_m, page.max_m);
   EXPECT_EQ((*back)->error_m, page.error_m);
+  EXPECT_EQ((*back)->block_errors_m, page.block_errors_m);
 }
 
 TEST(PageCodec, ElevationHoldsTheWholeRangeOfInt32) {
@@ -78,7 +81,7 @@ TEST(PageCodec, HeaderBytesArePinned) {
   const auto bytes = EncodeElevation(flat);
   const auto payload = static_cast<uint32_t>(bytes.size() - kPageHeaderBytes);
   ASSERT_LT(payload, 65536u);
-  constexpr uint32_t kRaw = 12 + 4 * 133 * 133;
+  constexpr uint32_t kRaw = 4 * (3 + 16 * 16) + 4 * 133 * 133;
   const std::vector<uint8_t> expected = {'B',
                                          'V',
                                          'P',

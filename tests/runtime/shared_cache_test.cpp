@@ -59,8 +59,8 @@ TEST(SharedCache, FindsWhatWasInserted) {
 }
 
 TEST(SharedCache, InsertKeepsThePageThatIsThere) {
-  SharedCache cache(1'000'000, 1);
   std::atomic<int> alive{0};
+  SharedCache cache(1'000'000, 1);
   const PagePin first = cache.Insert(Key(0, 1), MakePage(100, 1, &alive));
   const PagePin second = cache.Insert(Key(0, 1), MakePage(100, 2, &alive));
   EXPECT_EQ(second.as<CountedPage>().label(), 1);

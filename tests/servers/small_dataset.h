@@ -66,6 +66,7 @@ class SmallDataset {
     const auto put = [&](Quadcode node) {
       auto page = MakeElevation(node, WavyHeight);
       page->error_m = node.level() < 2 ? 50 : 0;
+      page->block_errors_m.fill(page->error_m);
       std::vector<uint8_t> value = EncodeElevation(*page);
       if (node == options.damaged) value.back() ^= 0x5A;
       BELVEDERE_CHECK(writer.Put(0, node, value).ok());

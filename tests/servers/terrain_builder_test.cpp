@@ -237,6 +237,7 @@ TEST(TerrainBuilder, WhatAPageLeavesOutRaisesEveryDeltaValue) {
   const Quadcode node = Quadcode::Containing(37, -118, 9);
   auto heights = MakeElevation(node, WavyHeight);
   heights->error_m = 12;
+  heights->block_errors_m.fill(12);
   const auto coarse = BuildTerrain({node, heights.get(), node, true, 1});
   const auto finest = BuildTerrain({node, heights.get(), node, false, 1});
   EXPECT_EQ(finest->error_m, 0);
@@ -245,6 +246,23 @@ TEST(TerrainBuilder, WhatAPageLeavesOutRaisesEveryDeltaValue) {
   for (size_t post = 0; post < kVerticesPerPage; ++post) {
     ASSERT_NEAR(coarse->deltas[post] - coarse->error_m, finest->deltas[post], 1e-2);
   }
+}
+
+TEST(TerrainBuilder, WhatABlockLeavesOutRaisesTheDeltaValuesThereAlone) {
+  const Quadcode node = Quadcode::Containing(37, -118, 9);
+  auto heights = MakeElevation(node, WavyHeight);
+  const auto smooth = BuildTerrain({node, heights.get(), node, true, 1});
+  heights->error_m = heights->block_errors_m[3 * kErrorBlocks + 5] = 500;  // cells 40..47 east, 24..31 north
+  const auto cliff = BuildTerrain({node, heights.get(), node, true, 1});
+  EXPECT_GT(cliff->error_m, 500);
+  const auto delta = [](const TerrainPage& page, int column, int row) {
+    return page.deltas[static_cast<size_t>(row * kPosts + column)];
+  };
+  EXPECT_GE(delta(*cliff, 45, 27), 500);
+  EXPECT_GE(delta(*cliff, 40, 31), 500) << "a post on the line between blocks belongs to both";
+  EXPECT_GE(delta(*cliff, kCells / 2, kCells / 2), 500) << "the page's middle splits all of it";
+  EXPECT_EQ(delta(*cliff, 101, 99), delta(*smooth, 101, 99));
+  EXPECT_EQ(delta(*cliff, 53, 27), delta(*smooth, 53, 27));
 }
 
 TEST(TerrainBuilder, TheSphereHoldsTheNodeAndAllUnderIt) {

@@ -1,0 +1,92 @@
+// Station: all the rooms, started and stopped in order.
+//
+//   start   dataset -> layers -> paging -> servers -> object table and receivers -> render thread -> views
+//   stop    views' managers -> render thread -> channels -> receivers -> servers -> paging -> dataset
+//
+// A view is a channel with its two managers, drawn by the render thread in a window or off-screen. What can be done
+// without is done without: a feed whose port is taken or a folder without models is a line for the user, not an end.
+//
+// Threads: the UI thread. Owns every other thread but that of a traffic sender.
+#pragma once
+
+#include "dis/receiver.h"
+#include "managers/object_manager.h"
+#include "managers/terrain_manager.h"
+#include "render/render_thread.h"
+#include "runtime/app/catalogue_file.h"
+#include "runtime/app/ground.h"
+#include "runtime/app/station_file.h"
+#include "runtime/paging/dataset.h"
+#include "servers/page_server.h"
+#include "servers/read_module.h"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace belvedere {
+
+struct StationOptions {
+  std::string dataset;
+  std::string models;  // empty: the project's own
+  size_t cache_bytes = size_t{512} << 20;
+  double exaggeration = 1;
+  FeedSpec feed;
+  RenderOptions render;
+};
+
+class Station {
+ public:
+  static Result<std::unique_ptr<Station>> Start(const StationOptions& options, const Clock& clock,
+                                                std::unique_ptr<Context> context);
+  ~Station();
+  Station(const Station&) = delete;
+  Station& operator=(const Station&) = delete;
+
+  // Data types of the named image layers, to be drawn in that order; with no names the first colour layer and every
+  // overlay, as many as fit.
+  Result<std::vector<DataType>> ImageLayers(const std::vector<std::string>& names) const;
+
+  // first: the view's parameters until others are published, with the number that the view is to have.
+  ViewChannel& AddView(const ViewParameters& first, Presenter* presenter);
+  // Returns when nothing of the view runs any more.
+  void RemoveView(ViewId id);
+
+  // Never under the surface that is drawn; the ellipsoid while nothing is there yet. Valid as long as the station.
+  const GroundHeight& ground() const { return ground_; }
+  // Lines for the user about what is wrong, at most a few.
+  std::vector<std::string> Notices() const;
+  double scene_hz(ViewId id) const;
+
+  Paging& paging() { return *paging_; }
+  ObjectTable& objects() { return *objects_; }
+  RenderThread& render() { return *render_; }
+  const std::vector<std::unique_ptr<dis::Receiver>>& receivers() const { return receivers_; }
+
+ private:
+  struct View {
+    std::shared_ptr<ViewChannel> channel;
+    std::unique_ptr<TerrainManager> terrain;
+    std::unique_ptr<ObjectManager> objects;
+  };
+
+  explicit Station(const Clock& clock) : clock_(clock) {}
+  Status StartPaging(const StationOptions& options);
+  void StartReceivers(const FeedSpec& feed);
+
+  const Clock& clock_;
+  std::unique_ptr<Dataset> dataset_;
+  Catalogue catalogue_;
+  ModuleRegistry registry_;
+  std::unique_ptr<Paging> paging_;
+  std::unique_ptr<ServerSet> servers_;
+  std::unique_ptr<ObjectTable> objects_;
+  std::vector<std::unique_ptr<dis::Receiver>> receivers_;
+  std::unique_ptr<RenderThread> render_;
+  std::map<ViewId, View> views_;
+  GroundHeight ground_;
+  std::vector<std::string> start_notices_;
+};
+
+}  // namespace belvedere

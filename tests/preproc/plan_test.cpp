@@ -1,0 +1,51 @@
+#include "preproc/plan.h"
+
+#include "runtime/paging/page.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace belvedere {
+namespace {
+
+TEST(Plan, TheFinestLevelIsTheCoarsestThatKeepsUpWithTheSource) {
+  for (const LayerKind kind : {LayerKind::kElevation, LayerKind::kImagery}) {
+    const double root_deg = kTreeDegrees / (kind == LayerKind::kElevation ? kCells : kImageInner);
+    EXPECT_EQ(FinestLevel(10, kind), 0);
+    EXPECT_EQ(FinestLevel(root_deg, kind), 0);
+    for (int level = 1; level < kMaxLevel; ++level) {
+      const double spacing_deg = std::ldexp(root_deg, -level);
+      EXPECT_EQ(FinestLevel(spacing_deg, kind), level);
+      EXPECT_EQ(FinestLevel(spacing_deg * 1.1, kind), level);
+      EXPECT_EQ(FinestLevel(spacing_deg * 0.9, kind), level + 1);
+    }
+    EXPECT_EQ(FinestLevel(1e-12, kind), kMaxLevel);
+  }
+}
+
+TEST(Plan, LevelZeroIsWholeAndFinerNodesFollowTheSource) {
+  EXPECT_EQ(CountNodes({}), kTrees);
+  // Within one quadnode of every level: three siblings of each level come with the one that holds it.
+  const std::vector<PlannedSource> inside = {{{10.01, 50.01, 10.02, 50.02}, 5}};
+  EXPECT_EQ(CountNodes(inside), kTrees + 4 * 5);
+  const std::vector<PlannedSource> world = {{{-180, -90, 180, 90}, 3}};
+  EXPECT_EQ(CountNodes(world), kTrees * (1 + 4 + 16 + 64));
+  EXPECT_EQ(SourceLevel(inside, Quadcode::Containing(50.015, 10.015, 3)), 5);
+  EXPECT_EQ(SourceLevel(inside, Quadcode::Containing(-50, 10, 3)), 0);
+}
+
+TEST(Plan, BoxesOverlapWhateverTheirTurn) {
+  const GeoBox seam{170, -10, 190, 10};
+  EXPECT_TRUE(Overlap(seam, {-180, 0, -175, 5}));
+  EXPECT_TRUE(Overlap(seam, {175, 0, 180, 5}));
+  EXPECT_TRUE(Overlap({-190, -10, -170, 10}, {175, 0, 180, 5}));
+  EXPECT_TRUE(Overlap({0, -90, 360, 90}, {-90, 0, -45, 45}));
+  EXPECT_FALSE(Overlap(seam, {0, 0, 45, 45}));
+  EXPECT_FALSE(Overlap({0, 0, 45, 45}, {45, 0, 90, 45})) << "a border is no overlap";
+  EXPECT_FALSE(Overlap({0, 0, 45, 45}, {0, 45, 45, 90}));
+}
+
+}  // namespace
+}  // namespace belvedere

@@ -1,0 +1,91 @@
+#include "render/object_overlay.h"
+
+#include "runtime/earth/ellipsoid.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace belvedere {
+namespace {
+
+class ObjectOverlay : public ::testing::Test {
+ protected:
+  ObjectOverlay() {
+    view_.eye_ecef = ToEcef({0, 0, 10e3});
+    view_.ecef_from_camera = CameraAxes(0, 0, Radians{}, Radians::FromDegrees(-90), Radians{});
+    view_.symbols = true;
+    list_.labels = {""};
+  }
+  // An aircraft at a place over the equator that heads that way.
+  void Put(double longitude_deg, double heading_deg, const std::string& label) {
+    ObjectInstance instance;
+    instance.position_ecef = ToEcef({0, longitude_deg, 1000});
+    const glm::dmat3 camera = CameraAxes(0, longitude_deg, Radians::FromDegrees(heading_deg), Radians{}, Radians{});
+    instance.ecef_from_body = {-camera[2], camera[0], -camera[1]};  // forward, right, down
+    instance.radius_m = 20;
+    instance.look.symbol = static_cast<uint8_t>(SymbolShape::kAir);
+    instance.look.colour = {255, 80, 80, 255};
+    if (!label.empty()) {
+      instance.label = static_cast<uint32_t>(list_.labels.size());
+      list_.labels.push_back(label);
+    }
+    list_.instances.push_back(instance);
+  }
+  const std::vector<OverlayBatch::Vertex>& Build() {
+    const ViewMatrices matrices = MatricesOf(view_, 0, 9000);
+    const InstanceRange all{0, static_cast<uint32_t>(list_.instances.size())};
+    const auto moved = MoveObjects(list_, {&all, 1}, view_, matrices, 0);
+    AddObjectOverlay(list_, moved, view_, matrices, batch_);
+    return batch_.vertices();
+  }
+
+  static constexpr float kMiddle_px = 512;
+  ViewParameters view_;
+  DisplayList list_;
+  const Atlas atlas_{"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"};
+  OverlayBatch batch_{atlas_};
+};
+
+TEST_F(ObjectOverlay, ASymbolTurnsWithTheHeading) {
+  Put(0, 90, "");
+  const auto& vertices = Build();
+  ASSERT_EQ(vertices.size(), 4U);
+  // The upper edge of the symbol, first two corners, looks east.
+  EXPECT_GT(vertices[0].x, kMiddle_px + 5);
+  EXPECT_GT(vertices[1].x, kMiddle_px + 5);
+  EXPECT_LT(vertices[2].x, kMiddle_px - 5);
+  EXPECT_EQ(vertices[0].colour, (OverlayBatch::Colour{255, 80, 80, 255}));
+  EXPECT_GT(vertices[0].depth, 0);
+}
+
+TEST_F(ObjectOverlay, LabelsStandBesideTheirObjects) {
+  Put(0, 0, "AB");
+  const auto& vertices = Build();
+  ASSERT_EQ(vertices.size(), 4U * 3);
+  for (size_t i = 4; i < vertices.size(); ++i) EXPECT_GT(vertices[i].x, kMiddle_px + 8);
+}
+
+TEST_F(ObjectOverlay, OverlappingLabelsGiveWay) {
+  Put(0, 0, "ABCDE");
+  Put(0.0001, 0, "FGHIJ");  // 11 m away: under a pixel
+  Put(0.02, 0, "KLMNO");    // 2 km away
+  EXPECT_EQ(Build().size(), 4U * (3 + 10));
+}
+
+TEST_F(ObjectOverlay, LabelsCanBeOffAndModelsHaveNoSymbol) {
+  Put(0, 0, "ABCDE");
+  view_.labels = false;
+  view_.symbols = false;
+  list_.instances[0].look.model_slot = 3;
+  EXPECT_TRUE(Build().empty());
+}
+
+TEST_F(ObjectOverlay, LabelsAreBounded) {
+  for (int i = 0; i < 2000; ++i) Put(0.00001 * i, 0, "A");
+  EXPECT_LE(Build().size(), 4U * (2000 + kMaxLabels));
+}
+
+}  // namespace
+}  // namespace belvedere

@@ -1,0 +1,196 @@
+// Moving objects, drawn off-screen.
+#include "render/renderer.h"
+
+#include "tests/render/synthetic_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace belvedere::testing {
+namespace {
+
+constexpr int kWidth = 200, kHeight = 160;
+
+// A cube of 2 m, green, in two details of which the coarser is a single triangle.
+std::unique_ptr<ModelPage> Cube() {
+  auto page = std::make_unique<ModelPage>();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const float side : {-1.0F, 1.0F}) {
+      const auto first = static_cast<uint32_t>(page->vertices.size());
+      for (const auto& [a, b] : {std::pair{-1.0F, -1.0F}, {1.0F, -1.0F}, {1.0F, 1.0F}, {-1.0F, 1.0F}}) {
+        std::array<float, 3> p{};
+        std::array<float, 3> n{};
+        p[static_cast<size_t>(axis)] = n[static_cast<size_t>(axis)] = side;
+        p[static_cast<size_t>((axis + 1) % 3)] = a * side;
+        p[static_cast<size_t>((axis + 2) % 3)] = b;
+        page->vertices.push_back({p[0], p[1], p[2], n[0], n[1], n[2], {20, 220, 20, 255}});
+      }
+      for (const uint32_t corner : {0U, 1U, 2U, 0U, 2U, 3U}) page->indices.push_back(first + corner);
+    }
+  }
+  page->details = {{0, 36, 0}, {0, 3, 1}};
+  page->radius_m = 1.8F;
+  return page;
+}
+
+class Objects : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    auto stage = Stage::Make(scene_, {}, clock_);
+    ASSERT_TRUE(stage.ok()) << stage.message();
+    stage_ = std::move(*stage);
+    std::vector<PagePin> pins;
+    pins.push_back(scene_.AddModel(0, Cube()));
+    stage_->Upload(std::move(pins));
+    view_ = LookAt({36.0, -118.0, 3000}, 0, -90, kWidth, kHeight);
+    view_.utc_s += 8 * 3600;  // noon at 118 W
+  }
+  // An object level and heading north, its model scaled so that it is `size_m` across.
+  ObjectInstance At(const Geodetic& where, float size_m) {
+    ObjectInstance instance;
+    instance.position_ecef = ToEcef(where);
+    const LevelAxes axes = LevelAxesAt(where.latitude_deg, where.longitude_deg);
+    instance.ecef_from_body = {axes.north, axes.east, -axes.up};
+    instance.radius_m = size_m;
+    instance.look.scale = size_m / 2;
+    instance.look.model_slot = 0;
+    return instance;
+  }
+  void Publish(const std::vector<ObjectInstance>& instances, const std::vector<std::string>& labels = {""}) {
+    DisplayList& list = stage_->channel->object_lists.back();
+    list.Clear();
+    list.instances = instances;
+    list.labels = labels;
+    list.number = 1;
+    PinInto(list, scene_.AddModel(0, Cube()));
+    list.records.push_back({ListRecord::Kind::kDrawInstances, 0, static_cast<uint32_t>(instances.size()), 0});
+    stage_->channel->object_lists.Publish();
+  }
+  Picture Draw() {
+    stage_->channel->parameters.Publish(view_);
+    stage_->Frame();
+    return stage_->Take();
+  }
+  struct Blob {
+    size_t pixels = 0;
+    glm::dvec2 centre{0.0};
+  };
+  template <typename Test>
+  static Blob Find(const Picture& picture, Test test) {
+    Blob blob;
+    for (int y = 0; y < picture.height_px; ++y) {
+      for (int x = 0; x < picture.width_px; ++x) {
+        if (!test(&picture.rgb[3 * static_cast<size_t>(y * picture.width_px + x)])) continue;
+        ++blob.pixels;
+        blob.centre += glm::dvec2(x + 0.5, y + 0.5);
+      }
+    }
+    if (blob.pixels > 0) blob.centre /= static_cast<double>(blob.pixels);
+    return blob;
+  }
+  static Blob Green(const Picture& picture) {
+    return Find(picture, [](const uint8_t* rgb) { return rgb[1] > 60 && rgb[0] < rgb[1] / 2 && rgb[2] < rgb[1] / 2; });
+  }
+  static glm::dvec2 Projected(const Picture& picture, const glm::dvec3& ecef) {
+    const glm::dvec4 clip = picture.matrices.clip_from_ecef * glm::dvec4(ecef, 1.0);
+    return {(0.5 + 0.5 * clip.x / clip.w) * picture.width_px, (0.5 - 0.5 * clip.y / clip.w) * picture.height_px};
+  }
+
+  ManualClock clock_;
+  Scene scene_;
+  std::unique_ptr<Stage> stage_;
+  ViewParameters view_;
+};
+
+TEST_F(Objects, AModelIsWhereClipFromEcefPutsIt) {
+  const ObjectInstance one = At({36.004, -118.003, 1000}, 150);
+  const ObjectInstance two = At({35.997, -117.998, 500}, 100);
+  Publish({one, two});
+  view_.ecef_from_camera = CameraAxes(36.0, -118.0, Radians{}, Radians::FromDegrees(-89), Radians{});
+  Picture picture = Draw();
+  const glm::dvec2 expected = Projected(picture, one.position_ecef);
+  for (int y = 0; y < kHeight; ++y) {  // leave only the first one's half
+    for (int x = kWidth / 2; x < kWidth; ++x) picture.rgb[3 * static_cast<size_t>(y * kWidth + x) + 1] = 0;
+  }
+  const Blob blob = Green(picture);
+  EXPECT_GT(blob.pixels, 30U);
+  EXPECT_NEAR(blob.centre.x, expected.x, 1.5);
+  EXPECT_NEAR(blob.centre.y, expected.y, 1.5);
+  EXPECT_EQ(picture.triangles, 24U);
+  EXPECT_EQ(picture.object_list, 1U);
+}
+
+TEST_F(Objects, DepthOfAModelIsItsDistance) {
+  Publish({At({36.0, -118.0, 1000}, 400)});
+  const Picture picture = Draw();
+  EXPECT_NEAR(picture.depth_m[static_cast<size_t>(kHeight / 2 * kWidth + kWidth / 2)], 1800, 1);
+}
+
+TEST_F(Objects, MovesBetweenTwoLists) {
+  ObjectInstance mover = At({36.0, -118.0, 1000}, 100);
+  mover.velocity_mps = 400.0 * LevelAxesAt(36.0, -118.0).east;
+  Publish({mover});
+  const Blob before = Green(Draw());
+  view_.time_s = 1.0;
+  const Picture picture = Draw();
+  const Blob after = Green(picture);
+  EXPECT_GT(after.centre.x, before.centre.x + 10);
+  EXPECT_NEAR(after.centre.x, Projected(picture, mover.position_ecef + mover.velocity_mps).x, 1.5);
+}
+
+TEST_F(Objects, TheDetailThatTheListAsksForIsDrawn) {
+  ObjectInstance far = At({36.0, -118.0, 1000}, 100);
+  far.look.detail = 1;
+  Publish({far});
+  EXPECT_EQ(Draw().triangles, 1U);
+  far.look.detail = 9;  // coarser than there is: the coarsest
+  Publish({far});
+  EXPECT_EQ(Draw().triangles, 1U);
+}
+
+TEST_F(Objects, SymbolsKeepTheirSizeAndForceColour) {
+  ObjectInstance object = At({36.0, -118.0, 0}, 10);
+  object.look.model_slot = -1;
+  object.look.symbol = static_cast<uint8_t>(SymbolShape::kGround);
+  object.look.colour = {40, 90, 255, 255};
+  const auto blue = [](const uint8_t* rgb) { return rgb[2] > 200 && rgb[0] < 80; };
+  size_t pixels[2] = {};
+  for (int i = 0; i < 2; ++i) {
+    view_.eye_ecef = ToEcef({36.0, -118.0, i == 0 ? 3000.0 : 300e3});
+    Publish({object});
+    const Blob blob = Find(Draw(), blue);
+    pixels[i] = blob.pixels;
+    EXPECT_NEAR(blob.centre.x, kWidth / 2, 1.0);
+    EXPECT_NEAR(blob.centre.y, kHeight / 2, 1.0);
+  }
+  EXPECT_GT(pixels[0], 100U);
+  EXPECT_NEAR(static_cast<double>(pixels[0]), static_cast<double>(pixels[1]), 6);
+}
+
+TEST_F(Objects, ALabelStandsBesideItsObject) {
+  ObjectInstance object = At({36.0, -118.0, 0}, 10);
+  object.look.model_slot = -1;
+  object.look.symbol = static_cast<uint8_t>(SymbolShape::kAir);
+  object.look.colour = {255, 230, 20, 255};
+  object.label = 1;
+  const auto yellow = [](const uint8_t* rgb) { return rgb[0] > 200 && rgb[1] > 180 && rgb[2] < 110; };
+  Publish({object}, {"", "N42"});
+  const Blob with_label = Find(Draw(), yellow);
+  view_.labels = false;
+  const Blob without = Find(Draw(), yellow);
+  EXPECT_GT(without.pixels, 50U);
+  EXPECT_GT(with_label.pixels, without.pixels + 30);
+  EXPECT_GT(with_label.centre.x, without.centre.x + 2);
+}
+
+TEST_F(Objects, CanBeHidden) {
+  Publish({At({36.0, -118.0, 1000}, 100)});
+  view_.draw_objects = false;
+  EXPECT_EQ(Green(Draw()).pixels, 0U);
+  view_.draw_objects = true;
+  EXPECT_GT(Green(Draw()).pixels, 0U);
+}
+
+}  // namespace
+}  // namespace belvedere::testing
