@@ -14,7 +14,9 @@ namespace belvedere {
 namespace {
 
 constexpr double kShareOutOfFrustum = 0.08;  // of the error that counts for a quadnode beside the picture
-constexpr double kLeastStretch = 0.02;       // straight down is never quite straight down for all of a quadnode
+constexpr double kShareBesideMap =
+    0.005;                              // likewise beside an orthographic picture, where nothing shrinks with distance
+constexpr double kLeastStretch = 0.02;  // straight down is never quite straight down for all of a quadnode
 constexpr double kNearest_m = 0.5;
 constexpr float kRootPriority = 1e6F;                // roots first: without them nothing is drawn
 constexpr int kBoxLevel = 4;                         // from here on a box around the ground is worth its making
@@ -239,7 +241,7 @@ class Selection {
     if (matrices_.horizon.Hides(sphere)) {
       measure.share = 0;
     } else if (matrices_.frustum.Hides(sphere)) {
-      measure.share = kShareOutOfFrustum;
+      measure.share = sight_.perspective ? kShareOutOfFrustum : kShareBesideMap;
     }
     const glm::dvec3 center = (page.center_ecef - matrices_.eye_ecef) * view_.ecef_from_camera;  // camera axes
     const glm::dvec3 up = glm::normalize(page.center_ecef) * view_.ecef_from_camera;

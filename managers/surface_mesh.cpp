@@ -68,6 +68,8 @@ constexpr int kSouthEast = kCells;
 constexpr int kNorthWest = kCells * kPosts;
 constexpr int kNorthEast = kCells * kPosts + kCells;
 
+constexpr float kLeastDepth_m = 1e-3F;
+
 struct LocalTriangle {
   uint16_t a, b, c;  // posts; right angle at a, counter-clockwise seen from above
 };
@@ -126,13 +128,18 @@ class Bisection {
       worst_ = std::max(worst_, error);
       return false;
     }
+    // Most posts are done with here, before their place is looked up in memory.
+    if (error <= nearest_depth_) {
+      worst_ = std::max(worst_, error / std::max(nearest_depth_, kLeastDepth_m));
+      return false;
+    }
     const float reach = page_.reach_m[static_cast<size_t>(level)];
     const TerrainVertex& vertex = vertices_[post];
     const glm::vec3 away(vertex.x - sight_.eye.x, vertex.y - sight_.eye.y, vertex.z - sight_.eye.z);
     const float depth = glm::dot(away, sight_.forward);
     const float distance_squared = glm::dot(away, away);
     const float farthest = error * sight_.per_cos_corner + reach;
-    if (error > nearest_depth_ && depth < error + reach && distance_squared < farthest * farthest) return true;
+    if (depth < error + reach && distance_squared < farthest * farthest) return true;
     const float least_depth =
         std::max({nearest_depth_, depth - reach, (std::sqrt(distance_squared) - reach) / sight_.per_cos_corner});
     if (least_depth > 0) worst_ = std::max(worst_, error / least_depth);

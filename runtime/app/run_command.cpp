@@ -44,7 +44,7 @@ int RunStation(const RunOptions& options) {
     if (Status status = MakeFolder(options.out); !status.ok()) return CouldNot(status);
   } else {
     Result<std::unique_ptr<WindowSystem>> made = WindowSystem::Make(clock);
-    if (!made.ok()) return CouldNot(Status::Error("{}; or render off-screen with --headless", made.message()));
+    if (!made.ok()) return CouldNot(made.status());
     windows = std::move(*made);
     context = windows->SharedContext();
   }

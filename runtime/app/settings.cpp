@@ -39,8 +39,10 @@ struct SettingsTable::State {
     return static_cast<int>(region.begin.line != 0 ? region.begin.line : fallback.begin.line);
   }
   void Mistake(std::string_view key, std::string_view message) {
+    constexpr int kAfterAllLines = 1 << 24;  // what is there and wrong is named before what is missing
     const int line = LineOf(key);
-    file->Record(line, fmt::format("{}:{}: {}{} {}", file->name, line, path, key, message));
+    file->Record(table->contains(key) ? line : kAfterAllLines + line,
+                 fmt::format("{}:{}: {}{} {}", file->name, line, path, key, message));
   }
 };
 

@@ -22,11 +22,13 @@ namespace belvedere {
 namespace {
 
 constexpr ViewId kView = 1;
-constexpr double kSettle_s = 6.0;  // a pose that takes longer is looked at as it is
+constexpr double kBoundSlack_px = 3.0;  // a bound of 2 px, its quarter more, and rounding
+constexpr double kSettle_s = 6.0;       // a pose that takes longer is looked at as it is
 constexpr std::chrono::milliseconds kLook{5};
 
 struct Hunt {
   Station& station;
+  const Dataset& dataset;
   ViewChannel& channel;
   const Clock& clock;
   ViewParameters view;
@@ -56,6 +58,8 @@ Geodetic PlaceOf(Hunt& hunt, int pose) {
 
 int64_t CountHoles(const Picture& picture) {
   int64_t holes = 0;
+  const double limb_m = HorizonDistance(ToGeodetic(picture.matrices.eye_ecef).height_m);
+  const double surely_covered_m = kDeepestGround_m - kBoundSlack_px * limb_m / picture.matrices.pixels_per_radian;
   const glm::dmat4 ecef_from_clip = glm::inverse(picture.matrices.clip_from_ecef);
   for (int y = 0; y < picture.height_px; ++y) {
     for (int x = 0; x < picture.width_px; ++x) {
@@ -66,7 +70,7 @@ int64_t CountHoles(const Picture& picture) {
                                                         1.0 - 2.0 * (y + 0.5) / picture.height_px, 0.5, 1.0);
       on_sight /= on_sight.w;
       const SightLine line{picture.matrices.eye_ecef, glm::normalize(glm::dvec3(on_sight) - picture.matrices.eye_ecef)};
-      if (DistanceToEllipsoid(line, kDeepestGround_m)) ++holes;
+      if (DistanceToEllipsoid(line, surely_covered_m)) ++holes;
     }
   }
   return holes;
@@ -88,9 +92,18 @@ void Look(Hunt& hunt, int pose, const char* when) {
              eye.latitude_deg, eye.longitude_deg, eye.height_m);
 }
 
+// Height of the finest page of the first elevation layer there; 0 where it cannot be read.
+double FinestGround(const Dataset& dataset, const Geodetic& place) {
+  const std::optional<int> layer = dataset.FindLayer(LayerKind::kElevation);
+  if (!layer) return 0;
+  const Quadcode node = dataset.FinestContaining(*layer, place.latitude_deg, place.longitude_deg);
+  const auto page = dataset.ReadElevation(*layer, node);
+  return page.ok() ? BilinearHeight(**page, node, place.latitude_deg, place.longitude_deg) : 0;
+}
+
 void Visit(Hunt& hunt, int pose) {
   const Geodetic place = PlaceOf(hunt, pose);
-  const double ground_m = std::max(0.0, hunt.station.ground()(place.latitude_deg, place.longitude_deg));
+  const double ground_m = std::max(0.0, FinestGround(hunt.dataset, place));
   const double height_m = ground_m + 100.0 + std::pow(10.0, hunt.Uniform(2.0, 6.8));
   hunt.view.eye_ecef = ToEcef({place.latitude_deg, place.longitude_deg, height_m});
   hunt.view.ecef_from_camera =
@@ -142,7 +155,7 @@ int Run(const std::string& dataset, int poses, int width_px, int height_px) {
   view.background = {1.0F, 0.0F, 1.0F};
   view.utc_s = 43'200;  // no place is dark enough for its colour to matter
   ViewChannel& channel = (*station)->AddView(view, nullptr);
-  Hunt hunt{**station, channel, clock, view, std::mt19937{1998}, {}};
+  Hunt hunt{**station, **opened, channel, clock, view, std::mt19937{1998}, {}};
   int finest = -1;
   for (const LayerRecord& layer : (*opened)->layers()) {
     for (const SourceRecord& source : layer.sources) {

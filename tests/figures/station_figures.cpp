@@ -1,0 +1,244 @@
+// Station figures: what a whole station does under load, off-screen, in one process.
+//
+//   station_figures views DATASET             bytes in the cache with three views of one place over those with one
+//   station_figures feed DATASET [SECONDS]    20,000 Entity State PDUs a second from 5,000 entities while three views
+//   draw station_figures malformed DATASET FOLDER  sends every .bin file of the folder to a running station that goes
+//   on drawing station_figures soak DATASET [MINUTES]    a random flight in a cache of 256 MiB: bytes and memory of the
+//   process by the minute
+//
+// Prints what was measured; exits 1 when a promise of docs/performance.md is broken.
+
+#include "dis/traffic_sender.h"
+#include "dis/udp_sender.h"
+#include "runtime/app/percentiles.h"
+#include "runtime/app/station.h"
+#include "runtime/earth/ellipsoid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <thread>
+
+namespace belvedere {
+namespace {
+
+constexpr uint16_t kPort = 30'711;
+constexpr size_t kMiB = size_t{1} << 20;
+const Geodetic kOverTheSierra{37.0, -118.6, 6500};
+
+[[noreturn]] void Give(const std::string& line) {
+  fmt::print(stderr, "station_figures: {}\n", line);
+  std::exit(1);
+}
+
+std::unique_ptr<Station> StartStation(const std::string& dataset, size_t cache_bytes, bool with_feed) {
+  Result<std::unique_ptr<Context>> context = MakeOffscreenContext();
+  if (!context.ok()) Give(context.message());
+  StationOptions options;
+  options.dataset = dataset;
+  options.cache_bytes = cache_bytes;
+  if (with_feed) {
+    options.feed.listen = {fmt::format("127.0.0.1:{}", kPort)};
+    options.feed.exercise = 1;
+  }
+  Result<std::unique_ptr<Station>> station = Station::Start(options, Clock::System(), std::move(*context));
+  if (!station.ok()) Give(station.message());
+  return std::move(*station);
+}
+
+ViewParameters ViewFrom(Station& station, ViewId id, const Geodetic& place, double heading_deg, double pitch_deg) {
+  ViewParameters view;
+  view.view = id;
+  view.number = 1;
+  view.time_s = Clock::System().NowSeconds();
+  view.utc_s = 72'000;  // midday in California
+  view.eye_ecef = ToEcef(place);
+  view.ecef_from_camera = CameraAxes(place.latitude_deg, place.longitude_deg, Radians::FromDegrees(heading_deg),
+                                     Radians::FromDegrees(pitch_deg), {});
+  view.image_layers = *station.ImageLayers({});
+  return view;
+}
+
+void Sleep(double seconds) {
+  std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
+}
+
+// Waits until the view draws a settled list; false after that many seconds.
+bool Settle(Station& station, ViewId id, double longest_s) {
+  for (double waited_s = 0; waited_s < longest_s; waited_s += 0.25) {
+    const Result<Picture> picture = station.render().Capture(id, Renderer::Moment::kOfParameters).get();
+    if (picture.ok() && picture->settled) return true;
+    Sleep(0.25);
+  }
+  return false;
+}
+
+int Views(const std::string& dataset) {
+  auto station = StartStation(dataset, 1024 * kMiB, false);
+  station->AddView(ViewFrom(*station, 1, kOverTheSierra, 330, -12), nullptr);
+  if (!Settle(*station, 1, 120)) Give("one view has not settled in 120 s");
+  const size_t one = station->paging().cache.Stats().resident_bytes;
+  for (const ViewId id : {2U, 3U}) station->AddView(ViewFrom(*station, id, kOverTheSierra, 330, -12), nullptr);
+  for (const ViewId id : {2U, 3U}) {
+    if (!Settle(*station, id, 120)) Give("three views have not settled in 120 s");
+  }
+  const size_t three = station->paging().cache.Stats().resident_bytes;
+  const double ratio = static_cast<double>(three) / static_cast<double>(one);
+  fmt::print("cache with one view {} MiB, with three of the same place {} MiB: ratio {:.3f} (limit 1.1)\n", one / kMiB,
+             three / kMiB, ratio);
+  return ratio < 1.1 ? 0 : 1;
+}
+
+void AddThreeViews(Station& station) {
+  station.AddView(ViewFrom(station, 1, kOverTheSierra, 330, -12), nullptr);
+  station.AddView(ViewFrom(station, 2, {37.2, -118.8, 60'000}, 0, -80), nullptr);
+  ViewParameters overview = ViewFrom(station, 3, {37.5, -119.0, 2e6}, 0, -90);
+  overview.projection = Projection::kOrthographic;
+  overview.ortho_height_m = 400'000;
+  overview.symbols = true;
+  station.AddView(overview, nullptr);
+}
+
+int Feed(const std::string& dataset, double seconds) {
+  auto station = StartStation(dataset, 512 * kMiB, true);
+  AddThreeViews(*station);
+  for (const ViewId id : {1U, 2U, 3U}) Settle(*station, id, 60);
+  dis::TrafficSenderOptions options;
+  options.to = {"127.0.0.1", kPort};
+  options.traffic.entities = 5000;
+  options.traffic.rate_pdus_per_s = 20'000;
+  options.traffic.utc_at_start_s = Clock::System().UtcSeconds();
+  auto sender = dis::TrafficSender::Start(options, Clock::System());
+  if (!sender.ok()) Give(sender.message());
+  station->render().TakeSamples();
+  Sleep(seconds);
+  (*sender)->Stop();
+  std::vector<double> frame_ms;
+  for (const FrameSample& sample : station->render().TakeSamples()) {
+    if (sample.view == 1) frame_ms.push_back(sample.frame_ms);
+  }
+  Sleep(0.5);  // for what is still in the socket
+  const dis::ReceiverCounters counters = station->receivers().at(0)->Counters();
+  const uint64_t sent = (*sender)->sent();
+  const double longest_ms = *std::max_element(frame_ms.begin(), frame_ms.end());
+  fmt::print(
+      "{} PDUs sent in {:.0f} s ({:.0f}/s), {} accepted, {} lost by the kernel, {} entities alive; three views: "
+      "{} frames, median {:.1f} ms, 99 % {:.1f} ms, longest {:.1f} ms (limit 150)\n",
+      sent, seconds, static_cast<double>(sent) / seconds, counters.intake.accepted, counters.lost_by_kernel,
+      counters.objects.alive, frame_ms.size(), PercentileOf(frame_ms, 0.5), PercentileOf(frame_ms, 0.99), longest_ms);
+  return counters.intake.accepted + counters.lost_by_kernel == sent && longest_ms < 150 ? 0 : 1;
+}
+
+int Malformed(const std::string& dataset, const std::string& folder) {
+  auto station = StartStation(dataset, 512 * kMiB, true);
+  ViewChannel& channel = station->AddView(ViewFrom(*station, 1, kOverTheSierra, 330, -12), nullptr);
+  auto sender = dis::UdpSender::Open({"127.0.0.1", kPort}, "");
+  if (!sender.ok()) Give(sender.message());
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() == ".bin") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  Sleep(1.0);
+  bool drawing = true;
+  for (const auto& file : files) {
+    std::ifstream stream(file, std::ios::binary);
+    const std::vector<char> bytes{std::istreambuf_iterator<char>(stream), {}};
+    const dis::ReceiverCounters before = station->receivers().at(0)->Counters();
+    const uint64_t frames_before = channel.frame.Get()->frame;
+    const std::span<const uint8_t> datagram(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size());
+    if (const Status status = (*sender)->Send(datagram); !status.ok()) Give(status.message());
+    Sleep(0.3);
+    const dis::ReceiverCounters after = station->receivers().at(0)->Counters();
+    const uint64_t frames = channel.frame.Get()->frame - frames_before;
+    drawing &= frames > 0;
+    fmt::print("{:24} accepted {} rejected {} ignored {} entities {} frames drawn meanwhile {}\n",
+               file.filename().string(), after.intake.accepted - before.intake.accepted,
+               after.intake.rejected_total() - before.intake.rejected_total(),
+               after.intake.ignored_total() - before.intake.ignored_total(), after.objects.alive, frames);
+  }
+  fmt::print("{} datagrams; the station {} drawing\n", files.size(), drawing ? "went on" : "STOPPED");
+  return drawing && !files.empty() ? 0 : 1;
+}
+
+size_t ResidentBytesOfProcess() {
+  std::ifstream status("/proc/self/statm");
+  size_t total_pages = 0, resident_pages = 0;
+  status >> total_pages >> resident_pages;
+  return resident_pages * 4096;
+}
+
+int Soak(const std::string& dataset, double minutes) {
+  constexpr size_t kBudget = 256 * kMiB;
+  auto station = StartStation(dataset, kBudget, false);
+  ViewChannel& channel = station->AddView(ViewFrom(*station, 1, kOverTheSierra, 330, -12), nullptr);
+  std::mt19937 random(20);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  Geodetic from = kOverTheSierra;
+  Geodetic to = from;
+  double leg_start_s = 0, leg_s = 0;
+  const double start_s = Clock::System().NowSeconds();
+  std::vector<size_t> by_minute;
+  uint64_t number = 1;
+  for (double now_s = 0; now_s < minutes * 60; now_s = Clock::System().NowSeconds() - start_s) {
+    if (now_s >= leg_start_s + leg_s) {
+      from = to;
+      const bool near = uniform(0, 1) < 0.7;  // most legs over the inset, some to the other side of the world
+      to = near ? Geodetic{uniform(36.7, 38.5), uniform(-120.6, -117.4), uniform(3500, 15'000)}
+                : Geodetic{uniform(-85, 85), uniform(-180, 180), std::pow(10.0, uniform(4.0, 7.0))};
+      leg_start_s = now_s;
+      leg_s = uniform(5, 20);
+    }
+    const double share = std::min(1.0, (now_s - leg_start_s) / leg_s);
+    const double smooth = share * share * (3 - 2 * share);
+    const Geodetic place{std::lerp(from.latitude_deg, to.latitude_deg, smooth),
+                         std::lerp(from.longitude_deg, to.longitude_deg, smooth),
+                         std::exp(std::lerp(std::log(from.height_m), std::log(to.height_m), smooth))};
+    ViewParameters view = ViewFrom(*station, 1, place, now_s * 7, -20);
+    view.number = ++number;
+    channel.parameters.Publish(view);
+    if (now_s >= 60.0 * static_cast<double>(by_minute.size() + 1)) {
+      by_minute.push_back(ResidentBytesOfProcess());
+      const SharedCache::Statistics cache = station->paging().cache.Stats();
+      fmt::print("minute {:2}: process {} MiB, cache {} MiB, peak {} MiB, {} evictions\n", by_minute.size(),
+                 by_minute.back() / kMiB, cache.resident_bytes / kMiB, cache.peak_bytes / kMiB, cache.evictions);
+      std::fflush(stdout);
+    }
+    Sleep(0.02);
+  }
+  const size_t peak = station->paging().cache.Stats().peak_bytes;
+  bool steady = true;
+  if (by_minute.size() >= 15) {
+    const double growth = static_cast<double>(by_minute.back()) / static_cast<double>(by_minute[4]) - 1.0;
+    fmt::print("process after {} minutes over after 5: {:+.2f} % (limit 3)\n", by_minute.size(), 100 * growth);
+    steady = std::abs(growth) < 0.03;
+  }
+  fmt::print("cache budget {} MiB, peak {} MiB\n", kBudget / kMiB, peak / kMiB);
+  return peak <= kBudget && steady ? 0 : 1;
+}
+
+int Run(const std::vector<std::string>& words) {
+  const auto number = [&](size_t index, double otherwise) {
+    return words.size() > index ? std::atof(words[index].c_str()) : otherwise;
+  };
+  if (words.size() >= 2 && words[0] == "views") return Views(words[1]);
+  if (words.size() >= 2 && words[0] == "feed") return Feed(words[1], number(2, 30));
+  if (words.size() >= 3 && words[0] == "malformed") return Malformed(words[1], words[2]);
+  if (words.size() >= 2 && words[0] == "soak") return Soak(words[1], number(2, 20));
+  fmt::print(stderr, "usage: station_figures views|feed|malformed|soak DATASET [SECONDS|FOLDER|MINUTES]\n");
+  return 2;
+}
+
+}  // namespace
+}  // namespace belvedere
+
+int main(int argc, char** argv) {
+  return belvedere::Run(std::vector<std::string>(argv + 1, argv + argc));
+}
