@@ -8,7 +8,8 @@ namespace {
 
 spdlog::logger& Logger() {
   static const auto kLogger = [] {
-    auto logger = std::make_shared<spdlog::logger>("belvedere", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
+    auto logger =
+        std::make_shared<spdlog::logger>("belvedere", std::make_shared<spdlog::sinks::stderr_color_sink_mt>());
     logger->set_pattern("%H:%M:%S %^%l%$ %v");
     return logger;
   }();
@@ -26,8 +27,12 @@ spdlog::level::level_enum SpdlogLevel(LogLevel level) {
 
 }  // namespace
 
-void LogLine(LogLevel level, std::string_view line) { Logger().log(SpdlogLevel(level), line); }
+void LogLine(LogLevel level, std::string_view line) {
+  Logger().log(SpdlogLevel(level), line);
+}
 
-void SetLogLevel(LogLevel level) { Logger().set_level(SpdlogLevel(level)); }
+void SetLogLevel(LogLevel level) {
+  Logger().set_level(SpdlogLevel(level));
+}
 
 }  // namespace belvedere

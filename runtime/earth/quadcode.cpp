@@ -15,7 +15,9 @@ namespace {
 constexpr double kDegreesPerUnit = kTreeDegrees / static_cast<double>(uint64_t{1} << kGridBitsPerTree);
 
 // Code of the first node of a level: (4^level - 1) / 3.
-constexpr uint64_t FirstCode(int level) { return ((uint64_t{1} << (2 * level)) - 1) / 3; }
+constexpr uint64_t FirstCode(int level) {
+  return ((uint64_t{1} << (2 * level)) - 1) / 3;
+}
 
 // Spreads the low 32 bits to the even bits (Morton order), and gathers them again.
 constexpr uint64_t Spread(uint64_t v) {
@@ -37,8 +39,12 @@ constexpr uint64_t Gather(uint64_t v) {
 
 }  // namespace
 
-double GridPoint::longitude_deg() const { return static_cast<double>(x) * kDegreesPerUnit - 180.0; }
-double GridPoint::latitude_deg() const { return static_cast<double>(y) * kDegreesPerUnit - 90.0; }
+double GridPoint::longitude_deg() const {
+  return static_cast<double>(x) * kDegreesPerUnit - 180.0;
+}
+double GridPoint::latitude_deg() const {
+  return static_cast<double>(y) * kDegreesPerUnit - 90.0;
+}
 
 int Quadcode::level() const {
   // 3 * code + 1 lies in [4^level, 4^(level+1))
@@ -99,7 +105,9 @@ GridPoint Quadcode::SouthWest() const {
   return {static_cast<uint32_t>(column() << shift), static_cast<uint32_t>(row() << shift)};
 }
 
-double Quadcode::SizeDegrees() const { return std::ldexp(kTreeDegrees, -level()); }
+double Quadcode::SizeDegrees() const {
+  return std::ldexp(kTreeDegrees, -level());
+}
 
 GeoBox Quadcode::Box() const {
   const double size = SizeDegrees();

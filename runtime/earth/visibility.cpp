@@ -13,9 +13,13 @@ namespace {
 const glm::dvec3 kScale{1.0 / (kEquatorialRadius_m + kDeepestGround_m), 1.0 / (kEquatorialRadius_m + kDeepestGround_m),
                         1.0 / (kPolarRadius_m + kDeepestGround_m)};
 
-glm::dvec4 Normalised(const glm::dvec4& plane) { return plane / glm::length(glm::dvec3(plane)); }
+glm::dvec4 Normalised(const glm::dvec4& plane) {
+  return plane / glm::length(glm::dvec3(plane));
+}
 
-double Distance(const glm::dvec4& plane, const glm::dvec3& point) { return glm::dot(glm::dvec3(plane), point) + plane.w; }
+double Distance(const glm::dvec4& plane, const glm::dvec3& point) {
+  return glm::dot(glm::dvec3(plane), point) + plane.w;
+}
 
 }  // namespace
 
@@ -28,15 +32,13 @@ Frustum::Frustum(const glm::dmat4& clip_from_ecef) {
 }
 
 bool Frustum::Hides(const BoundingSphere& sphere) const {
-  return std::any_of(planes_.begin(), planes_.end(), [&](const glm::dvec4& plane) {
-    return Distance(plane, sphere.center_ecef) < -sphere.radius_m;
-  });
+  return std::any_of(planes_.begin(), planes_.end(),
+                     [&](const glm::dvec4& plane) { return Distance(plane, sphere.center_ecef) < -sphere.radius_m; });
 }
 
 bool Frustum::Encloses(const BoundingSphere& sphere) const {
-  return std::all_of(planes_.begin(), planes_.end(), [&](const glm::dvec4& plane) {
-    return Distance(plane, sphere.center_ecef) >= sphere.radius_m;
-  });
+  return std::all_of(planes_.begin(), planes_.end(),
+                     [&](const glm::dvec4& plane) { return Distance(plane, sphere.center_ecef) >= sphere.radius_m; });
 }
 
 Horizon::Horizon(const glm::dvec3& eye_ecef)

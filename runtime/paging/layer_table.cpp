@@ -15,12 +15,14 @@ DataType LayerTable::Add(Layer layer) {
 }
 
 const Layer* LayerTable::Find(std::string_view name) const {
-  const auto found = std::find_if(layers_.begin(), layers_.end(), [&](const Layer& layer) { return layer.name == name; });
+  const auto found =
+      std::find_if(layers_.begin(), layers_.end(), [&](const Layer& layer) { return layer.name == name; });
   return found == layers_.end() ? nullptr : &*found;
 }
 
 const Layer* LayerTable::FirstOf(PageKind kind) const {
-  const auto found = std::find_if(layers_.begin(), layers_.end(), [&](const Layer& layer) { return layer.kind == kind; });
+  const auto found =
+      std::find_if(layers_.begin(), layers_.end(), [&](const Layer& layer) { return layer.kind == kind; });
   return found == layers_.end() ? nullptr : &*found;
 }
 

@@ -49,7 +49,7 @@ inline constexpr int kApron = 2;
 inline constexpr int kElevationSide = kPosts + 2 * kApron;  // 133
 
 // What finer pages add is kept for blocks of 8 x 8 cells, so that one cliff does not make the whole page look coarse.
-inline constexpr int kErrorBlocks = 16;                 // along each side
+inline constexpr int kErrorBlocks = 16;  // along each side
 inline constexpr int kBlockCells = kCells / kErrorBlocks;
 using ErrorBlocks = std::array<float, static_cast<size_t>(kErrorBlocks) * kErrorBlocks>;  // row by row
 

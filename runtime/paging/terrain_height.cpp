@@ -41,8 +41,8 @@ GroundPoint GroundOnPage(const TerrainPage& page, double latitude_deg, double lo
   const glm::dvec3 normal = glm::cross(east, north);
   GroundPoint ground;
   ground.height_m = ToGeodetic(frame.ToEcef(local)).height_m;
-  ground.normal_ecef = glm::dot(normal, normal) > 0 ? frame.ecef_from_frame * glm::normalize(normal)
-                                                    : UpAt(latitude_deg, longitude_deg);
+  ground.normal_ecef =
+      glm::dot(normal, normal) > 0 ? frame.ecef_from_frame * glm::normalize(normal) : UpAt(latitude_deg, longitude_deg);
   ground.level = page.node.level();
   return ground;
 }
@@ -52,7 +52,8 @@ std::optional<GroundPoint> GroundUnder(Paging& paging, DataType terrain, double 
   for (Quadcode node = Quadcode::Containing(latitude_deg, longitude_deg, level);; node = node.Parent()) {
     const PageKey key{terrain, node};
     if (paging.cache.Contains(key)) {
-      if (const PagePin pin = paging.cache.Find(key)) return GroundOnPage(pin.as<TerrainPage>(), latitude_deg, longitude_deg);
+      if (const PagePin pin = paging.cache.Find(key))
+        return GroundOnPage(pin.as<TerrainPage>(), latitude_deg, longitude_deg);
     }
     if (node.is_root()) return std::nullopt;
   }

@@ -12,8 +12,8 @@ namespace belvedere {
 namespace {
 
 constexpr double kHighestGround_m = 9'000.0;
-// Of the height above the ground. Reverse-Z in 32-bit floats is as exact far away as near by, so the near plane need only
-// stay in front of the nearest object: a tethered eye is some tens of metres from its aircraft at any height.
+// Of the height above the ground. Reverse-Z in 32-bit floats is as exact far away as near by, so the near plane need
+// only stay in front of the nearest object: a tethered eye is some tens of metres from its aircraft at any height.
 constexpr double kNearShareOfHeight = 5e-4;
 constexpr double kNearest_m = 0.1;
 
