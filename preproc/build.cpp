@@ -38,6 +38,7 @@ struct OpenLayer {
 
   std::vector<RasterSource*> pointers() const {
     std::vector<RasterSource*> out;
+    out.reserve(sources.size());
     for (const auto& source : sources) out.push_back(source.get());
     return out;
   }

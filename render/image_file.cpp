@@ -14,7 +14,7 @@ std::string TemporaryPath(const std::string& path, const char* ending) {
   return path + ".part" + ending;
 }
 
-Status WriteImage(const std::string& path, const char* ending, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+Status WriteImage(const std::string& path, const char* ending, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
                   const void* pixels) {
   const std::string temporary = TemporaryPath(path, ending);
   auto output = OIIO::ImageOutput::create(temporary);

@@ -303,7 +303,7 @@ void SharedCache::Unpin(PagePin::Entry* entry) {
   }
 }
 
-void SharedCache::MarkFailed(const PageKey& key, Status reason) {
+void SharedCache::MarkFailed(const PageKey& key, const Status& reason) {
   BELVEDERE_CHECK(key.type < tables_.size() && !reason.ok());
   Table& table = *tables_[key.type];
   MutexLock lock(table.mutex);

@@ -90,7 +90,7 @@ class SharedCache {
   PagePin Insert(const PageKey& key, std::unique_ptr<const Page> page);
 
   // reason: one line that names the page, the cause and where.
-  void MarkFailed(const PageKey& key, Status reason);
+  void MarkFailed(const PageKey& key, const Status& reason);
   // ok when the key has not failed.
   Status FailureOf(const PageKey& key) const;
   // Lets a failed page be tried again.

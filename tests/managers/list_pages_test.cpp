@@ -1,0 +1,110 @@
+#include "managers/list_pages.h"
+
+#include "tests/managers/random_earth.h"
+
+#include <gtest/gtest.h>
+
+namespace belvedere {
+namespace {
+
+constexpr DataType kTerrain = 0;
+constexpr DataType kImagery = 1;
+constexpr DataType kModels = 2;
+constexpr ViewId kView = 7;
+
+LayerTable ThreeLayers() {
+  LayerTable layers;
+  const auto all = [](Quadcode) { return true; };
+  layers.Add({"terrain", PageKind::kTerrain, 0, 5, all});
+  layers.Add({"imagery", PageKind::kColour, 0, 5, all});
+  layers.Add({"model", PageKind::kModel, 0, kMaxLevel, all});
+  return layers;
+}
+
+class ListPagesTest : public testing::Test {
+ protected:
+  PagePin PutTerrain(Quadcode node) {
+    auto page = std::make_unique<TerrainPage>();
+    page->node = node;
+    return paging_.cache.Insert({kTerrain, node}, std::move(page));
+  }
+
+  ManualClock clock_;
+  Paging paging_{ThreeLayers(), size_t{1} << 24, clock_};
+  DisplayList list_;
+  const Quadcode node_ = Quadcode::Root(3).Child(1);
+};
+
+TEST_F(ListPagesTest, WhatIsNotInMemoryBecomesAWish) {
+  ListPages pages(paging_, kTerrain, list_);
+  EXPECT_EQ(pages.Terrain(node_), nullptr);
+  EXPECT_TRUE(pages.Want({kTerrain, node_}, 5));
+  EXPECT_TRUE(pages.Want({kTerrain, node_}, 5)) << "wanting twice is one wish";
+  EXPECT_EQ(pages.pages_waiting(), 1U);
+  pages.Finish(kView, ListPages::Queues::kTerrain);
+  EXPECT_EQ(paging_.queue(kTerrain).TryTake(), (PageKey{kTerrain, node_}));
+  EXPECT_TRUE(list_.uploads.empty());
+}
+
+TEST_F(ListPagesTest, WhatIsInMemoryButNotOnTheGpuBecomesAnUpload) {
+  PutTerrain(node_);
+  ListPages pages(paging_, kTerrain, list_);
+  ASSERT_NE(pages.Terrain(node_), nullptr);
+  EXPECT_EQ(pages.Slot({kTerrain, node_}), std::nullopt);
+  EXPECT_TRUE(pages.Want({kTerrain, node_}, 5));
+  pages.Finish(kView, ListPages::Queues::kTerrain);
+  ASSERT_EQ(list_.uploads.size(), 1U);
+  EXPECT_EQ(list_.uploads[0].key().node, node_);
+  EXPECT_EQ(paging_.queue(kTerrain).TryTake(), std::nullopt);
+}
+
+TEST_F(ListPagesTest, UploadsComeMostWantedFirst) {
+  for (int which = 0; which < 4; ++which) PutTerrain(Quadcode::Root(which));
+  ListPages pages(paging_, kTerrain, list_);
+  for (const int which : {2, 0, 3, 1}) pages.Want({kTerrain, Quadcode::Root(which)}, static_cast<float>(which));
+  pages.Finish(kView, ListPages::Queues::kTerrain);
+  ASSERT_EQ(list_.uploads.size(), 4U);
+  for (int place = 0; place < 4; ++place) {
+    EXPECT_EQ(list_.uploads[static_cast<size_t>(place)].key().node, Quadcode::Root(3 - place));
+  }
+}
+
+TEST_F(ListPagesTest, WhatItHandsOutStaysUntilTheListIsCleared) {
+  const Residency* residency = nullptr;
+  {
+    const PagePin pin = PutTerrain(node_);
+    residency = pin.page().residency().get();
+    pin.page().residency()->Place(11);
+  }
+  {
+    ListPages pages(paging_, kTerrain, list_);
+    EXPECT_EQ(pages.Slot({kTerrain, node_}), 11);
+  }
+  EXPECT_GT(paging_.cache.PinnedBytes(), 0U);
+  EXPECT_FALSE(const_cast<Residency*>(residency)->TryEvict());
+  list_.Clear();
+  EXPECT_TRUE(const_cast<Residency*>(residency)->TryEvict());
+  EXPECT_EQ(paging_.cache.PinnedBytes(), 0U);
+}
+
+TEST_F(ListPagesTest, AFailedPageIsNotWishedForAgain) {
+  paging_.cache.MarkFailed({kImagery, node_}, Status::Error("damaged"));
+  ListPages pages(paging_, kTerrain, list_);
+  EXPECT_FALSE(pages.Want({kImagery, node_}, 5));
+  EXPECT_EQ(pages.pages_waiting(), 0U);
+}
+
+TEST_F(ListPagesTest, EachManagerSpeaksForItsOwnQueues) {
+  DisplayList objects_list;
+  ListPages terrain(paging_, kTerrain, list_);
+  ListPages objects(paging_, kTerrain, objects_list);
+  terrain.Want({kImagery, node_}, 1);
+  objects.Want({kModels, node_}, 1);
+  terrain.Finish(kView, ListPages::Queues::kTerrain);
+  objects.Finish(kView, ListPages::Queues::kObjects);
+  EXPECT_TRUE(paging_.queue(kImagery).TryTake()) << "the object manager has not withdrawn it";
+  EXPECT_TRUE(paging_.queue(kModels).TryTake());
+}
+
+}  // namespace
+}  // namespace belvedere

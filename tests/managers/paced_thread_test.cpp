@@ -1,0 +1,27 @@
+#include "managers/paced_thread.h"
+
+#include <gtest/gtest.h>
+
+#include <semaphore>
+
+namespace belvedere {
+namespace {
+
+TEST(PacedThread, RunsItsStepAgainAndAgain) {
+  std::counting_semaphore<16> steps(0);
+  PacedThread thread("test", 1000, [&] { steps.release(); });
+  for (int i = 0; i < 5; ++i) steps.acquire();
+}
+
+TEST(PacedThread, EndsWithoutWaitingForItsPause) {
+  std::binary_semaphore stepped(0);
+  {
+    // Once a day: the test would not end if destruction waited for the pause.
+    PacedThread thread("test", 1.0 / 86'400, [&] { stepped.release(); });
+    stepped.acquire();
+  }
+  SUCCEED();
+}
+
+}  // namespace
+}  // namespace belvedere
