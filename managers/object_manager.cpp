@@ -4,6 +4,7 @@
 #include "managers/object_selection.h"
 #include "managers/paced_thread.h"
 #include "runtime/base/status.h"
+#include "runtime/base/trace.h"
 #include "runtime/earth/ellipsoid.h"
 #include "runtime/paging/model_catalogue.h"
 #include "runtime/paging/terrain_height.h"
@@ -46,6 +47,7 @@ class ObjectManager::Worker {
   void Step() {
     const std::shared_ptr<const ViewParameters> view = channel_->parameters.Get();
     if (view->number == 0) return;
+    const TraceSpan span("objects.list");
     const double now_s = clock_.NowSeconds();
     DisplayList& list = channel_->object_lists.back();
     list.Clear();

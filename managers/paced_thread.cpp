@@ -1,5 +1,7 @@
 #include "managers/paced_thread.h"
 
+#include "runtime/base/trace.h"
+
 #include <pthread.h>
 
 #include <algorithm>
@@ -29,6 +31,7 @@ PacedThread::~PacedThread() {
 
 void PacedThread::Run(const char* name, double period_s) {
   pthread_setname_np(pthread_self(), name);
+  Trace::NameThread(name);
   double pause_s = 0;
   while (Pause(pause_s)) {
     const auto begin = SteadyClock::now();

@@ -5,6 +5,7 @@
 #include "managers/paced_thread.h"
 #include "managers/surface_mesh.h"
 #include "runtime/base/status.h"
+#include "runtime/base/trace.h"
 #include "runtime/earth/ellipsoid.h"
 #include "runtime/paging/terrain_height.h"
 
@@ -42,6 +43,7 @@ class TerrainManager::Worker {
   void Step() {
     const std::shared_ptr<const ViewParameters> view = channel_->parameters.Get();
     if (view->number == 0 || IsUpToDate(*view)) return;
+    const TraceSpan span("terrain.list");
     const double now_s = clock_.NowSeconds();
     DisplayList& list = channel_->terrain_lists.back();
     list.Clear();

@@ -6,6 +6,7 @@
 #include "render/upload_order.h"
 #include "render/view_block.h"
 #include "runtime/base/log.h"
+#include "runtime/base/trace.h"
 #include "runtime/earth/ellipsoid.h"
 #include "runtime/earth/sun.h"
 
@@ -115,6 +116,7 @@ void Renderer::FetchLists(View& view) {
 }
 
 void Renderer::UploadPages() {
+  const TraceSpan span("render.upload");
   const double start_s = clock_.NowSeconds();
   const uint64_t bytes_before = pages_.uploaded_bytes();
   std::vector<std::span<const PagePin>> wishes;
@@ -139,6 +141,7 @@ void Renderer::UploadPages() {
 }
 
 void Renderer::DrawFrame(FrameRecorder& recorder, Context& context) {
+  const TraceSpan span("render.frame");
   ++frame_;
   start_s_ = clock_.NowSeconds();
   const double frame_ms = last_start_s_ ? (start_s_ - *last_start_s_) * 1000 : 0;

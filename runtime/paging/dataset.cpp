@@ -2,6 +2,7 @@
 
 #include "runtime/paging/dataset_store.h"
 #include "runtime/paging/page_codec.h"
+#include "runtime/paging/store_mapping.h"
 
 #include <lmdb.h>
 #include <sys/stat.h>
@@ -107,6 +108,7 @@ class LmdbDataset final : public Dataset {
     auto metadata = store::FromJson({static_cast<const char*>(value.mv_data), value.mv_size});
     if (!metadata.ok()) return Status::Error("{}: {}", path_, metadata.message());
     metadata_ = std::move(*metadata);
+    mapping_.Find(value.mv_data);
     return {};
   }
 
@@ -147,6 +149,7 @@ class LmdbDataset final : public Dataset {
     const auto value = Find(txn, layer, node);
     if (!value) return Status::Error("{}: {}", Where(layer, node), "there is no such page");
     auto page = decode(*value);
+    mapping_.HaveRead(value->size());
     if (!page.ok()) return Status::Error("{}: {}; build the dataset again", Where(layer, node), page.message());
     return page;
   }
@@ -159,6 +162,7 @@ class LmdbDataset final : public Dataset {
   int64_t bytes_ = 0;
   MDB_env* env_ = nullptr;
   MDB_dbi dbi_ = 0;
+  StoreMapping mapping_;
   store::Metadata metadata_;
   std::vector<std::vector<uint64_t>> nodes_;  // by layer, ascending
 };
