@@ -5,15 +5,11 @@
 #include "runtime/paging/terrain_height.h"
 #include "servers/stock_modules.h"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <utility>
 
 namespace belvedere {
 namespace {
-
-constexpr int kOwnMappingBytes = 64 << 10;  // smaller than any page's larger parts
 
 constexpr size_t kMostFailuresShown = 3;
 
@@ -21,9 +17,6 @@ constexpr size_t kMostFailuresShown = 3;
 
 Result<std::unique_ptr<Station>> Station::Start(const StationOptions& options, const Clock& clock,
                                                 std::unique_ptr<Context> context) {
-  // Pages come and go by the thousand, made by one thread and freed by another. With mappings of their own their memory
-  // goes back to the system at once, and the process does not grow by the holes between them.
-  mallopt(M_MMAP_THRESHOLD, kOwnMappingBytes);
   std::unique_ptr<Station> station(new Station(clock));
   if (Status status = station->StartPaging(options); !status.ok()) return status;
   ObjectTable::Options table;

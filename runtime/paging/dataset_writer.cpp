@@ -16,6 +16,7 @@ namespace fs = std::filesystem;
 
 // Address space, not disk: the file grows with what is written.
 constexpr size_t kLargestStoreBytes = size_t{1} << 40;
+constexpr size_t kLeastStoreBytes = size_t{1} << 30;
 
 class LmdbWriter final : public DatasetWriter {
  public:
@@ -33,9 +34,10 @@ class LmdbWriter final : public DatasetWriter {
     fs::remove_all(partial_, error);
     fs::create_directories(partial_, error);
     if (error) return Status::Error("{}: cannot make the folder: {}", partial_, error.message());
-    int rc = mdb_env_create(&env_);
-    if (rc == MDB_SUCCESS) rc = mdb_env_set_mapsize(env_, kLargestStoreBytes);
-    if (rc == MDB_SUCCESS) rc = mdb_env_open(env_, partial_.c_str(), MDB_NOLOCK | MDB_NOSYNC | MDB_NOTLS, 0644);
+    // The map is address space, not memory; where the system gives less of it (a limit, a sanitizer), less must do.
+    int rc = ENOMEM;
+    for (size_t bytes = kLargestStoreBytes; rc == ENOMEM && bytes >= kLeastStoreBytes; bytes /= 4)
+      rc = OpenStore(bytes);
     if (rc == MDB_SUCCESS) rc = Begin();
     return rc == MDB_SUCCESS ? Status() : Problem(rc);
   }
@@ -77,6 +79,14 @@ class LmdbWriter final : public DatasetWriter {
   }
 
  private:
+  int OpenStore(size_t map_bytes) {
+    if (env_ != nullptr) mdb_env_close(std::exchange(env_, nullptr));
+    int rc = mdb_env_create(&env_);
+    if (rc == MDB_SUCCESS) rc = mdb_env_set_mapsize(env_, map_bytes);
+    if (rc == MDB_SUCCESS) rc = mdb_env_open(env_, partial_.c_str(), MDB_NOLOCK | MDB_NOSYNC | MDB_NOTLS, 0644);
+    return rc;
+  }
+
   int Begin() {
     const int rc = mdb_txn_begin(env_, nullptr, 0, &txn_);
     return rc == MDB_SUCCESS && dbi_ == 0 ? mdb_dbi_open(txn_, nullptr, 0, &dbi_) : rc;
