@@ -46,7 +46,7 @@ struct SnapshotOptions {
   Geodetic position;
   double heading_deg = 0, pitch_deg = -90, roll_deg = 0, vfov_deg = 60;
   PictureSize size{1024, 768};
-  double error_px = 2, texel_px = 1.25;
+  double error_px = 1, texel_px = 1;  // a still picture can take its time
   std::vector<std::string> layers;
   double exaggeration = 1;
   std::optional<double> utc_s;

@@ -98,7 +98,7 @@ def main(build, work):
         pose = (latitude + chance.uniform(-0.3, 0.3), longitude + chance.uniform(-0.3, 0.3), chance.uniform(40e3, 160e3),
                 chance.uniform(0, 360), chance.uniform(-90, -50))
         picture_file = str(folder / f"pose{pose_number}.png")
-        report = programs.snapshot(pose, SIZE, picture_file, extra=["--layers", "imagery", "--time", "2026-06-21T12:00:00Z"])
+        report = programs.snapshot(pose, SIZE, picture_file, extra=["--layers", "imagery"])
         picture = gdal.Open(picture_file).ReadAsArray()[0]
         places = numpy.array(marks[centre])
         heights = programs.heights(places[:, 0], places[:, 1])
