@@ -104,6 +104,8 @@ class Selection {
         cut_.behind = true;
       }
     }
+    // An Earth with holes is not shown: until the last root has come, there is none.
+    if (cut_.waiting) return std::move(cut_);
     std::sort(roots.begin(), roots.end(), [](const Root& a, const Root& b) { return a.distance_m < b.distance_m; });
     for (const Root& root : roots) Visit(root.node, *root.page, root.slot);
     return std::move(cut_);

@@ -68,6 +68,7 @@ constexpr int kSouthEast = kCells;
 constexpr int kNorthWest = kCells * kPosts;
 constexpr int kNorthEast = kCells * kPosts + kCells;
 
+constexpr float kAlwaysDrawn_m = 12'000.0F;  // delta value from which a post is drawn whatever the view
 constexpr float kLeastDepth_m = 1e-3F;
 
 struct LocalTriangle {
@@ -121,6 +122,8 @@ class Bisection {
   }
 
   bool Drawn(int post, int level) {
+    // Whoever jumps to the other side of the world finds it round, also in the list that was made before the jump.
+    if (deltas_[post] > kAlwaysDrawn_m) return true;
     // A quadnode that must serve although its own posts are too coarse draws what its relief asks and no more.
     const float error = std::max(0.0F, deltas_[post] - left_over_m_) * scale_;  // drawn when over the least depth
     if (!sight_.perspective) {

@@ -50,7 +50,8 @@ ViewMatrices MatricesOf(const ViewParameters& view, double clock_time_s, double 
   ViewMatrices matrices;
   matrices.eye_ecef = view.EyeAt(clock_time_s);
   const double ellipsoid_height_m = ToGeodetic(matrices.eye_ecef).height_m;
-  matrices.near_m = std::max(kNearest_m, kNearShareOfHeight * height_above_ground_m);
+  matrices.near_m = std::max(
+      kNearest_m, kNearShareOfHeight * std::min(height_above_ground_m, std::max(ellipsoid_height_m, kNearest_m)));
   matrices.far_m = std::max(FarPlane(ellipsoid_height_m), 10.0 * matrices.near_m);
   const double aspect = static_cast<double>(view.width_px) / static_cast<double>(view.height_px);
   if (view.projection == Projection::kPerspective) {
