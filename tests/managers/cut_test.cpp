@@ -149,6 +149,16 @@ TEST_F(CutTest, AFailedPageIsNotWaitedFor) {
   EXPECT_FALSE(cut.behind);
 }
 
+TEST_F(CutTest, WithARootStillToComeThereIsNoEarthYet) {
+  pages_.missing.insert(Quadcode::Root(5));
+  const Cut cut = Select();
+  EXPECT_TRUE(cut.nodes.empty());
+  EXPECT_TRUE(cut.waiting);
+  EXPECT_TRUE(pages_.wanted.contains({kTerrain, Quadcode::Root(5)}));
+  pages_.failed.insert(Quadcode::Root(5));  // it never comes: the rest is shown
+  EXPECT_FALSE(Select().nodes.empty());
+}
+
 TEST_F(CutTest, BehindTheHorizonAndBesideThePictureIsCoarser) {
   const Cut cut = Select();
   for (const CutNode& node : cut.nodes) {

@@ -41,6 +41,11 @@ TEST_F(ObjectSelectionTest, BehindTheEyeAndBehindTheHorizonAreLeftOut) {
   EXPECT_EQ(Show(2'000'000, 5000).how, ObjectShow::How::kNot);
 }
 
+TEST_F(ObjectSelectionTest, TheNearPlaneFollowsTheEyeThoughTheGroundHeightIsStale) {
+  EXPECT_LT(MatricesOf(view_, 0, 6e6).near_m, 5);  // a list made from space; the eye is at 5 km by now
+  EXPECT_LT(MatricesOf(view_, 0, 100).near_m, MatricesOf(view_, 0, 5000).near_m);
+}
+
 TEST_F(ObjectSelectionTest, TheOverviewShowsSymbols) {
   view_.symbols = true;
   EXPECT_EQ(Show(500).how, ObjectShow::How::kSymbol);
