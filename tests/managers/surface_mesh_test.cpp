@@ -170,6 +170,18 @@ TEST(SurfaceMesh, ATighterBoundDrawsMore) {
   EXPECT_GT(tight, loose);
 }
 
+TEST(SurfaceMesh, TheFarSideIsRoundThoughNobodyLooksAtIt) {
+  const auto page = FlatPage(Quadcode::Root(0), std::vector<float>(kVerticesPerPage, 20'000.0F));
+  CutNode hidden;
+  hidden.node = Quadcode::Root(0);
+  hidden.page = page.get();
+  hidden.error_scale = 0;  // behind the horizon
+  DisplayList list;
+  const std::vector<CutNode> cut{hidden};
+  EXPECT_EQ(BuildSurface(cut, Sight{}, 2.0, list).triangles,
+            2U * kCells * kCells - kCells);  // less one a column at the pole
+}
+
 TEST(SurfaceMesh, ReportsAnErrorUnderTheBound) {
   std::mt19937 random(8);
   const Surface surface = MakeSurface(random, RandomCutNodes(random, 6, 4), ToEcef({30, 40, 2e6}), 16.0);
