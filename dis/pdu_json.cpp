@@ -74,11 +74,17 @@ void AddBody(Json& line, const EntityStateUpdate& update) {
   line["parts"] = Parts(update.parameters);
 }
 
+// What Fire and Detonation say alike.
+template <typename Engagement>
+void AddParticipants(Json& line, const Engagement& engagement) {
+  line["firing"] = engagement.firing.ToString();
+  line["target"] = engagement.target.ToString();
+  line["munition"] = engagement.munition.ToString();
+  line["event"] = engagement.event.ToString();
+}
+
 void AddBody(Json& line, const Fire& fire) {
-  line["firing"] = fire.firing.ToString();
-  line["target"] = fire.target.ToString();
-  line["munition"] = fire.munition.ToString();
-  line["event"] = fire.event.ToString();
+  AddParticipants(line, fire);
   line["fire_mission"] = fire.mission;
   line["position_m"] = Triple(fire.position_ecef);
   line["descriptor"] = Descriptor(fire.descriptor);
@@ -87,10 +93,7 @@ void AddBody(Json& line, const Fire& fire) {
 }
 
 void AddBody(Json& line, const Detonation& detonation) {
-  line["firing"] = detonation.firing.ToString();
-  line["target"] = detonation.target.ToString();
-  line["munition"] = detonation.munition.ToString();
-  line["event"] = detonation.event.ToString();
+  AddParticipants(line, detonation);
   line["velocity_mps"] = Triple(detonation.velocity_mps);
   line["position_m"] = Triple(detonation.position_ecef);
   line["descriptor"] = Descriptor(detonation.descriptor);

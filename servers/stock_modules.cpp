@@ -13,12 +13,18 @@
 namespace belvedere {
 namespace {
 
-ReadModule ElevationModule(const Dataset& dataset, int layer, const LayerRecord& record) {
+// A layer of the dataset, without the function that reads its pages.
+ReadModule LayerOf(const Dataset& dataset, int layer, const LayerRecord& record, PageKind kind) {
   ReadModule module;
   module.layer = record.name;
-  module.kind = PageKind::kElevation;
+  module.kind = kind;
   module.max_level = record.max_level;
   module.exists = [&dataset, layer](Quadcode node) { return dataset.Exists(layer, node); };
+  return module;
+}
+
+ReadModule ElevationModule(const Dataset& dataset, int layer, const LayerRecord& record) {
+  ReadModule module = LayerOf(dataset, layer, record, PageKind::kElevation);
   module.read = [&dataset, layer](ReadContext&, Quadcode node) -> Result<std::unique_ptr<Page>> {
     Result<std::shared_ptr<ElevationPage>> page = dataset.ReadElevation(layer, node);
     if (!page.ok()) return page.status();
@@ -28,11 +34,7 @@ ReadModule ElevationModule(const Dataset& dataset, int layer, const LayerRecord&
 }
 
 ReadModule ImageryModule(const Dataset& dataset, int layer, const LayerRecord& record) {
-  ReadModule module;
-  module.layer = record.name;
-  module.kind = PageKind::kColour;
-  module.max_level = record.max_level;
-  module.exists = [&dataset, layer](Quadcode node) { return dataset.Exists(layer, node); };
+  ReadModule module = LayerOf(dataset, layer, record, PageKind::kColour);
   module.read = [&dataset, layer](ReadContext&, Quadcode node) -> Result<std::unique_ptr<Page>> {
     Result<std::shared_ptr<ImagePage>> page = dataset.ReadImage(layer, node);
     if (!page.ok()) return page.status();
