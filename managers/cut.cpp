@@ -123,7 +123,7 @@ class Selection {
     cut_.volumes.push_back({page.center_ecef, page.radius_m});
 
     const Measure measure = MeasureOf(page);
-    const double geometry_ratio = page.error_m * measure.error_metre_px * measure.share / GreatestError(view_.error_px);
+    const double geometry_ratio = page.error_m * measure.error_metre_px * measure.share / view_.error_px;
     const double ratio = std::max(geometry_ratio, TextureRatio(node, measure));
     if (ratio <= 1.0 || !Refine(node, measure, ratio)) Draw(node, page, slot, measure, geometry_ratio <= 1.0);
 
@@ -184,8 +184,7 @@ class Selection {
       drawn.images[i] = ChooseImage(view_.image_layers[i], node, measure);
     }
     if (drawn.visible && !finest) {
-      cut_.left_over_error_px =
-          std::max(cut_.left_over_error_px, page.error_m * measure.error_metre_px / kWorstOverBound);
+      cut_.left_over_error_px = std::max(cut_.left_over_error_px, page.error_m * measure.error_metre_px);
     }
     cut_.records.push_back({ListRecord::Kind::kDrawTerrain, static_cast<uint32_t>(cut_.nodes.size()), 1, 0});
     cut_.nodes.push_back(drawn);

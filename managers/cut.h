@@ -39,15 +39,6 @@ class PageAccess {
   virtual bool Want(const PageKey& key, float priority) = 0;
 };
 
-// Delta values bound the error at the worst point of a triangle, which almost no point comes near: with the bound held
-// by them to the letter, 999 of 1000 points are within three quarters of it (tests/figures/screen_error.py). So the
-// triangles' worst points may exceed the bound that the user sets by this factor, and the user's bound still holds for
-// 999 points of 1000; docs/decisions/0003 has the figures.
-inline constexpr double kWorstOverBound = 1.25;
-constexpr double GreatestError(double error_px) {
-  return kWorstOverBound * error_px;
-}
-
 // From where and which way errors are seen.
 struct Sight {
   glm::dvec3 eye_ecef{};

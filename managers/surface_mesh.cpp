@@ -1,12 +1,10 @@
 #include "managers/surface_mesh.h"
 
 #include "managers/border_lines.h"
+#include "managers/post_selection.h"
 #include "runtime/base/status.h"
 
-#include <glm/geometric.hpp>
-
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -63,103 +61,6 @@ std::optional<Border> SharedBorder(int a, int b) {
   return std::nullopt;
 }
 
-constexpr int kSouthWest = 0;
-constexpr int kSouthEast = kCells;
-constexpr int kNorthWest = kCells * kPosts;
-constexpr int kNorthEast = kCells * kPosts + kCells;
-
-constexpr float kAlwaysDrawn_m = 12'000.0F;  // delta value from which a post is drawn whatever the view
-constexpr float kLeastDepth_m = 1e-3F;
-
-struct LocalTriangle {
-  uint16_t a, b, c;  // posts; right angle at a, counter-clockwise seen from above
-};
-
-// A Sight in the coordinate frame of one quadnode.
-struct LocalSight {
-  glm::vec3 eye;
-  glm::vec3 forward;
-  float per_cos_corner;
-  bool perspective;
-};
-
-LocalSight InFrame(const Sight& sight, const Frame& frame) {
-  return {glm::vec3(frame.ToFrame(sight.eye_ecef)), glm::vec3(sight.forward_ecef * frame.ecef_from_frame),
-          static_cast<float>(1.0 / sight.cos_corner), sight.perspective};
-}
-
-// Bisects the two root triangles of one quadnode as far as its delta values ask.
-class Bisection {
- public:
-  Bisection(const CutNode& node, const LocalSight& sight, double error_px, std::vector<LocalTriangle>& out)
-      : page_(*node.page),
-        vertices_(page_.vertices.data()),
-        deltas_(page_.deltas.data()),
-        sight_(sight),
-        scale_(static_cast<float>(node.error_scale / GreatestError(error_px))),
-        nearest_depth_(static_cast<float>(node.nearest_depth_m)),
-        left_over_m_(node.finest ? 0.0F : page_.error_m),
-        out_(out) {}
-
-  // Largest error left, in units of the bound, over all triangles.
-  double Run() {
-    Split(kSouthEast, kNorthEast, kSouthWest, 0);
-    Split(kNorthWest, kSouthWest, kNorthEast, 0);
-    return worst_;
-  }
-
- private:
-  void Split(int a, int b, int c, int level) {
-    if (level < kBisections) {
-      const int middle = (b + c) / 2;  // exact in posts numbered row by row: rows and columns halve separately
-      if (Drawn(middle, level)) {
-        Split(middle, a, b, level + 1);
-        Split(middle, c, a, level + 1);
-        return;
-      }
-    }
-    out_.push_back({static_cast<uint16_t>(a), static_cast<uint16_t>(b), static_cast<uint16_t>(c)});
-  }
-
-  bool Drawn(int post, int level) {
-    // Whoever jumps to the other side of the world finds it round, also in the list that was made before the jump.
-    if (deltas_[post] > kAlwaysDrawn_m) return true;
-    // A quadnode that must serve although its own posts are too coarse draws what its relief asks and no more.
-    const float error = std::max(0.0F, deltas_[post] - left_over_m_) * scale_;  // drawn when over the least depth
-    if (!sight_.perspective) {
-      if (error > 1.0F) return true;
-      worst_ = std::max(worst_, error);
-      return false;
-    }
-    // Most posts are done with here, before their place is looked up in memory.
-    if (error <= nearest_depth_) {
-      worst_ = std::max(worst_, error / std::max(nearest_depth_, kLeastDepth_m));
-      return false;
-    }
-    const float reach = page_.reach_m[static_cast<size_t>(level)];
-    const TerrainVertex& vertex = vertices_[post];
-    const glm::vec3 away(vertex.x - sight_.eye.x, vertex.y - sight_.eye.y, vertex.z - sight_.eye.z);
-    const float depth = glm::dot(away, sight_.forward);
-    const float distance_squared = glm::dot(away, away);
-    const float farthest = error * sight_.per_cos_corner + reach;
-    if (depth < error + reach && distance_squared < farthest * farthest) return true;
-    const float least_depth =
-        std::max({nearest_depth_, depth - reach, (std::sqrt(distance_squared) - reach) / sight_.per_cos_corner});
-    if (least_depth > 0) worst_ = std::max(worst_, error / least_depth);
-    return false;
-  }
-
-  const TerrainPage& page_;
-  const TerrainVertex* const vertices_;
-  const float* const deltas_;
-  const LocalSight& sight_;
-  const float scale_;
-  const float nearest_depth_;
-  const float left_over_m_;
-  std::vector<LocalTriangle>& out_;
-  float worst_ = 0;
-};
-
 // Joins the triangles of one quadnode to its neighbours' along its borders, and appends them as absolute vertices.
 class Joiner {
  public:
@@ -181,7 +82,7 @@ class Joiner {
     }
   }
 
-  void Append(const LocalTriangle& triangle) {
+  void Append(const PostTriangle& triangle) {
     const std::array<int, 3> posts{triangle.a, triangle.b, triangle.c};
     std::array<uint32_t, 3> vertices;
     bool on_border = false;
@@ -317,7 +218,7 @@ std::vector<uint32_t> RankNodes(std::span<const CutNode> nodes) {
 }
 
 // Adds the posts of one quadnode's triangles that lie on its borders.
-void AddBorderPosts(const CutNode& node, std::span<const LocalTriangle> triangles, uint32_t rank, BorderLines& lines) {
+void AddBorderPosts(const CutNode& node, std::span<const PostTriangle> triangles, uint32_t rank, BorderLines& lines) {
   std::array<std::array<bool, kPosts>, 4> seen{};
   const auto& border_bits = BorderBits();
   const auto add = [&](int post) {
@@ -332,7 +233,7 @@ void AddBorderPosts(const CutNode& node, std::span<const LocalTriangle> triangle
       lines.Add(node.node, border, along, vertex, rank);
     }
   };
-  for (const LocalTriangle& triangle : triangles) {
+  for (const PostTriangle& triangle : triangles) {
     add(triangle.a);
     add(triangle.b);
     add(triangle.c);
@@ -366,17 +267,17 @@ uint32_t FrameIndex(Quadcode node, std::vector<Frame>& frames) {
 
 MeshStatistics BuildSurface(std::span<const CutNode> nodes, const Sight& sight, double error_px, DisplayList& list) {
   MeshStatistics statistics;
-  std::vector<LocalTriangle> triangles;
+  PostSelection posts;
+  std::vector<PostTriangle> triangles;
   std::vector<size_t> ends;
   const std::vector<uint32_t> rank = RankNodes(nodes);
   BorderLines lines;
   for (size_t i = 0; i < nodes.size(); ++i) {
     const CutNode& node = nodes[i];
     const uint32_t frame = FrameIndex(node.node, list.frames);
-    list.slots.push_back({node.slot, frame, node.node.SouthWest(), node.node.PostSpacing()});
+    list.slots.push_back({node.page, node.slot, frame, node.node.SouthWest(), node.node.PostSpacing()});
     const size_t begin = triangles.size();
-    const LocalSight local = InFrame(sight, list.frames[frame]);
-    const double worst = Bisection(node, local, error_px, triangles).Run();
+    const double worst = posts.Run(node, sight, list.frames[frame], error_px, triangles);
     if (node.visible) statistics.achieved_error_px = std::max(statistics.achieved_error_px, worst * error_px);
     AddBorderPosts(node, std::span(triangles).subspan(begin), rank[i], lines);
     ends.push_back(triangles.size());

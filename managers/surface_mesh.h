@@ -1,9 +1,5 @@
 // Surface mesh: the second stage of terrain selection. Chooses posts within each quadnode of a cut by their delta
-// values and joins all quadnodes into one watertight surface.
-//
-// Within a quadnode, two root triangles are bisected: the midpoint of the hypotenuse is drawn when its delta value,
-// seen from the nearest point that depends on it, is more than the bound. Delta values and reaches are nested (page.h),
-// so a post that is drawn has all posts drawn that it depends on, and the triangles of a quadnode meet edge to edge.
+// values (post_selection.h) and joins all quadnodes into one watertight surface.
 //
 // Between quadnodes, each side chooses for itself; then the line that they share is made the same for both. All posts
 // that lie on a border line and are drawn by any quadnode are gathered; each position gets one canonical vertex (that
@@ -11,8 +7,6 @@
 // a fan at every canonical vertex of that edge. This works for quadnodes of any levels, across quadtrees, frames and
 // 180 E. On a pole line all positions are one point, hence one vertex.
 //
-// Source of the bisection: Evans, Kirkpatrick, Townsend, "Right-triangulated irregular networks" (Algorithmica 2001);
-// of nested delta values: Lindstrom, Pascucci, "Visualization of large terrains made easy" (Visualization 2001).
 // Threads: pure.
 #pragma once
 

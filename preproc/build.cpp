@@ -77,26 +77,27 @@ class LayerBuilder {
     CountDone(node, node.level());
   }
 
-  std::shared_ptr<const ElevationPage> BuildElevation(Quadcode node) {
+  BoundedPage BuildElevation(Quadcode node) {
     auto page = std::make_shared<ElevationPage>();
     page->heights_mm = composites_.local()->Heights_mm(node);
     const int source_level = SourceLevel(layer_.plan, node);
-    if (Stopped()) return page;
+    if (Stopped()) return {page, CellDeviations(static_cast<size_t>(kCells) * kCells)};
+    CellDeviations deviations;
     if (node.level() < source_level || NeedsRefinement(*page, node, source_level)) {
-      std::array<std::shared_ptr<const ElevationPage>, 4> finer;
+      std::array<BoundedPage, 4> finer;
       tbb::task_group children;
       for (size_t which = 0; which < 4; ++which) {
         children.run(
             [this, node, which, &finer] { finer[which] = BuildElevation(node.Child(static_cast<int>(which))); });
       }
       children.wait();
-      BoundPage(*page, &finer);
+      deviations = BoundPage(*page, &finer);
     } else {
-      BoundPage(*page, nullptr);
+      deviations = BoundPage(*page, nullptr);
     }
     sink_.Put(number_, node, EncodeElevation(*page));
     CountDone(node, source_level);
-    return page;
+    return {std::move(page), std::move(deviations)};
   }
 
   bool NeedsRefinement(const ElevationPage& page, Quadcode node, int source_level) {

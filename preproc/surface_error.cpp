@@ -31,30 +31,41 @@ float RoundedDown(double value) {
   return -RoundedUp(-value);
 }
 
-}  // namespace
-
-std::array<double, ErrorBlocks{}.size()> DistanceFromParent(const ElevationPage& parent, const ElevationPage& child,
-                                                            int which) {
+// Heights of the child over the parent's triangles at its posts, twice, millimetres.
+std::vector<int64_t> TwiceOverParent(const ElevationPage& parent, const ElevationPage& child, int which) {
   const int west = which % 2 * kCells;
   const int south = which / 2 * kCells;
-  std::array<double, ErrorBlocks{}.size()> distances{};
-  for (int block = 0; block < kErrorBlocks * kErrorBlocks; ++block) {
-    const int first_row = block / kErrorBlocks * kBlockCells;
-    const int first_column = block % kErrorBlocks * kBlockCells;
-    int64_t largest = 0;
-    // A post on the line between blocks belongs to both.
-    for (int row = first_row; row <= first_row + kBlockCells; ++row) {
-      for (int column = first_column; column <= first_column + kBlockCells; ++column) {
-        const int64_t twice = 2 * int64_t{child.at(column, row)} - TwiceHeight(parent, west + column, south + row);
-        largest = std::max(largest, std::abs(twice));
-      }
+  std::vector<int64_t> over;
+  over.reserve(static_cast<size_t>(kPosts) * kPosts);
+  for (int row = 0; row < kPosts; ++row) {
+    for (int column = 0; column < kPosts; ++column) {
+      over.push_back(2 * int64_t{child.at(column, row)} - TwiceHeight(parent, west + column, south + row));
     }
-    distances[static_cast<size_t>(block)] = static_cast<double>(largest) / 2000.0;
   }
-  return distances;
+  return over;
 }
 
-void BoundPage(ElevationPage& page, const std::array<std::shared_ptr<const ElevationPage>, 4>* children) {
+// Widens the cells of the parent by what lies under them in the child `which`, cell by cell of the child.
+void AddChild(const ElevationPage& parent, const BoundedPage& child, int which, CellDeviations& parents) {
+  const std::vector<int64_t> over = TwiceOverParent(parent, *child.page, which);
+  const int west = which % 2 * kCells;
+  const int south = which / 2 * kCells;
+  for (int row = 0; row < kCells; ++row) {
+    for (int column = 0; column < kCells; ++column) {
+      const auto corner = static_cast<size_t>(row * kPosts + column);
+      const auto [lowest, highest] =
+          std::minmax({over[corner], over[corner + 1], over[corner + kPosts], over[corner + kPosts + 1]});
+      const Deviation& own = child.deviations[static_cast<size_t>(row * kCells + column)];
+      Deviation& cell = parents[static_cast<size_t>((south + row) / 2 * kCells + (west + column) / 2)];
+      cell.low = std::min(cell.low, RoundedDown(static_cast<double>(own.low) + static_cast<double>(lowest) / 2000.0));
+      cell.high = std::max(cell.high, RoundedUp(static_cast<double>(own.high) + static_cast<double>(highest) / 2000.0));
+    }
+  }
+}
+
+}  // namespace
+
+CellDeviations BoundPage(ElevationPage& page, const std::array<BoundedPage, 4>* children) {
   int32_t lowest = page.at(0, 0), highest = page.at(0, 0);
   for (int row = 0; row < kPosts; ++row) {
     for (int column = 0; column < kPosts; ++column) {
@@ -66,21 +77,23 @@ void BoundPage(ElevationPage& page, const std::array<std::shared_ptr<const Eleva
   page.max_m = RoundedUp(highest / 1000.0);
   page.error_m = 0;
   page.block_errors_m.fill(0);
-  if (children == nullptr) return;
-  for (int which = 0; which < 4; ++which) {
-    const ElevationPage& child = *(*children)[static_cast<size_t>(which)];
-    page.min_m = std::min(page.min_m, child.min_m);
-    page.max_m = std::max(page.max_m, child.max_m);
-    const auto distances = DistanceFromParent(page, child, which);
-    for (size_t block = 0; block < distances.size(); ++block) {
-      // Two by two blocks of the child lie under one of the parent.
-      const size_t x = (static_cast<size_t>(which) % 2 * kErrorBlocks + block % kErrorBlocks) / 2;
-      const size_t y = (static_cast<size_t>(which) / 2 * kErrorBlocks + block / kErrorBlocks) / 2;
-      float& own = page.block_errors_m[y * kErrorBlocks + x];
-      own = std::max(own, RoundedUp(static_cast<double>(child.block_errors_m[block]) + distances[block]));
-      page.error_m = std::max(page.error_m, own);
-    }
+  CellDeviations deviations(static_cast<size_t>(kCells) * kCells);
+  if (children == nullptr) return deviations;
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  deviations.assign(deviations.size(), {kInfinity, -kInfinity});
+  for (size_t which = 0; which < children->size(); ++which) {
+    const BoundedPage& child = (*children)[which];
+    page.min_m = std::min(page.min_m, child.page->min_m);
+    page.max_m = std::max(page.max_m, child.page->max_m);
+    AddChild(page, child, static_cast<int>(which), deviations);
   }
+  for (size_t cell = 0; cell < deviations.size(); ++cell) {
+    const size_t block = cell / kCells / kBlockCells * kErrorBlocks + cell % kCells / kBlockCells;
+    float& error = page.block_errors_m[block];
+    error = std::max({error, deviations[cell].high, -deviations[cell].low});
+    page.error_m = std::max(page.error_m, error);
+  }
+  return deviations;
 }
 
 double ShareBeyond(const ElevationPage& page, const std::vector<double>& probe_heights_m, double tolerance_m) {

@@ -16,14 +16,23 @@
 
 namespace belvedere {
 
-// Largest vertical distance, in metres, between the parent's triangles and the posts of its child `which` (Quadcode),
-// for each block of the child.
-std::array<double, ErrorBlocks{}.size()> DistanceFromParent(const ElevationPage& parent, const ElevationPage& child,
-                                                            int which);
+// By how much the finest surface lies over (high) and under (low) the triangles of a page, metres, for each of its
+// cells; row by row. Both sides are kept apart until the page is stored: what one level adds and the next takes away
+// must not count twice.
+struct Deviation {
+  float low = 0, high = 0;
+};
+using CellDeviations = std::vector<Deviation>;  // kCells^2
+
+// What the levels above need of a page that is done.
+struct BoundedPage {
+  std::shared_ptr<const ElevationPage> page;
+  CellDeviations deviations;
+};
 
 // Fills min_m, max_m, block_errors_m and error_m of a page: over its posts, and all that is finer where there are
-// children (all four, with theirs already filled).
-void BoundPage(ElevationPage& page, const std::array<std::shared_ptr<const ElevationPage>, 4>* children);
+// children (all four). Returns the deviations of its cells: none of where nothing is finer.
+CellDeviations BoundPage(ElevationPage& page, const std::array<BoundedPage, 4>* children);
 
 // The share of probes (ProbeLattice) that lie further than tolerance_m from the page's bilinear surface.
 double ShareBeyond(const ElevationPage& page, const std::vector<double>& probe_heights_m, double tolerance_m);

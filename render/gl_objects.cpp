@@ -9,6 +9,8 @@
 namespace belvedere {
 namespace {
 
+constexpr GLuint64 kLongestWait_ns = 1'000'000'000;
+
 GLuint Compile(std::string_view name, GLenum stage, const std::string& source, const std::string& defines) {
   const std::string text = "#version 450 core\n" + defines + source;
   const GLuint shader = glCreateShader(stage);
@@ -27,6 +29,19 @@ GLuint Compile(std::string_view name, GLenum stage, const std::string& source, c
 }
 
 }  // namespace
+
+void FramesInFlight::EndFrame() {
+  GLsync ended = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  glFlush();
+  if (previous_ != nullptr) glClientWaitSync(previous_, 0, kLongestWait_ns);
+  Forget();
+  previous_ = ended;
+}
+
+void FramesInFlight::Forget() {
+  glDeleteSync(previous_);
+  previous_ = nullptr;
+}
 
 GlProgram MakeProgram(std::string_view name, const std::string& vertex_source, const std::string& fragment_source,
                       const std::string& defines) {

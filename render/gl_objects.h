@@ -76,6 +76,21 @@ using GlFramebuffer = GlName<FramebufferTraits>;
 using GlRenderbuffer = GlName<RenderbufferTraits>;
 using GlProgram = GlName<ProgramTraits>;
 
+// One frame may still be drawn while the next is prepared: a renderer in software then has work for all its threads.
+class FramesInFlight {
+ public:
+  FramesInFlight() = default;
+  FramesInFlight(const FramesInFlight&) = delete;
+  FramesInFlight& operator=(const FramesInFlight&) = delete;
+  ~FramesInFlight() { Forget(); }
+  // All commands of a frame have been given. Returns when the frame before it is drawn.
+  void EndFrame();
+
+ private:
+  void Forget();
+  GLsync previous_ = nullptr;
+};
+
 // Compiles and links shaders of shaders/; `defines` ("#define A 1\n...") goes after the #version line of both.
 // REQUIRES: the sources are ours, so that a failure is a broken contract; it prints the compiler's log and stops.
 GlProgram MakeProgram(std::string_view name, const std::string& vertex_source, const std::string& fragment_source,

@@ -1,5 +1,6 @@
 #include "render/renderer.h"
 
+#include "render/drawn_ground.h"
 #include "render/hud.h"
 #include "render/moved_objects.h"
 #include "render/object_overlay.h"
@@ -19,8 +20,16 @@ namespace {
 
 constexpr double kHudRefresh_s = 0.25;
 
-double NoTerrainHeight(const ViewParameters& parameters, double now_s) {
-  return std::max(1.0, ToGeodetic(parameters.EyeAt(now_s)).height_m);
+constexpr double kLeastOverGround_m = 1.0;
+
+// Where the list draws its ground over the eye, since pages have not come, the picture is taken from just above that.
+ViewMatrices MatricesOver(const DisplayList& terrain, const ViewParameters& parameters, double now_s) {
+  const Geodetic eye = ToGeodetic(parameters.EyeAt(now_s));
+  const double over_ground_m = eye.height_m - DrawnGroundAt(terrain, eye).value_or(0.0);
+  if (over_ground_m >= kLeastOverGround_m) return MatricesOf(parameters, now_s, over_ground_m);
+  ViewParameters raised = parameters;
+  raised.eye_ecef += (kLeastOverGround_m - over_ground_m) * UpAt(eye.latitude_deg, eye.longitude_deg);
+  return MatricesOf(raised, now_s, kLeastOverGround_m);
 }
 
 RenderOptions WithDefaults(RenderOptions options, const ContextFacts& facts) {
@@ -154,8 +163,10 @@ void Renderer::DrawFrame(FrameRecorder& recorder, Context& context) {
     if (view->parameters->width_px <= 0 || view->parameters->height_px <= 0) continue;  // a minimised window
     view->drawn_s = start_s_;
     const Drawn drawn = DrawView(*view, *view->parameters, start_s_);
+    if (view->presenter == nullptr && view == views_.back()) in_flight_.EndFrame();
     const double draw_ms = (clock_.NowSeconds() - view_start_s) * 1000;
     if (view->presenter != nullptr) {
+      glFinish();  // the window's context reads it
       view->presenter->Present(view->target.colour_texture(), view->target.width(), view->target.height());
       if (Status status = context.MakeCurrent(); !status.ok()) LogError("{}", status.message());
     }
@@ -166,9 +177,7 @@ void Renderer::DrawFrame(FrameRecorder& recorder, Context& context) {
 Renderer::Drawn Renderer::DrawView(View& view, const ViewParameters& parameters, double now_s) {
   const DisplayList& terrain = view.channel->terrain_lists.front();
   const DisplayList& objects = view.channel->object_lists.front();
-  const double height_m =
-      view.has_terrain ? terrain.statistics.height_above_ground_m : NoTerrainHeight(parameters, now_s);
-  view.matrices = MatricesOf(parameters, now_s, height_m);
+  view.matrices = MatricesOver(terrain, parameters, now_s);
   const glm::dvec3 sun_ecef = SunDirectionEcef(parameters.utc_s + (now_s - parameters.time_s));
   const ViewBlock block = MakeViewBlock(parameters, view.matrices, sun_ecef);
   glNamedBufferData(view_block_.get(), sizeof(ViewBlock), &block, GL_STREAM_DRAW);
@@ -195,8 +204,6 @@ Renderer::Drawn Renderer::DrawView(View& view, const ViewParameters& parameters,
   if (parameters.sky) sky_.Draw();
   DrawOverlay(view, parameters, now_s);
   view.target.Resolve();
-  // Nothing is left to be drawn when the next frame uploads into what this one reads; and what a frame costs is known.
-  glFinish();
   return drawn;
 }
 
@@ -300,8 +307,10 @@ std::vector<double> Renderer::Redraw(ViewId id, int times) {
   for (int i = 0; i < times; ++i) {
     const double start_s = clock_.NowSeconds();
     DrawView(*view, *view->parameters, view->drawn_s);
+    in_flight_.EndFrame();
     draw_ms.push_back((clock_.NowSeconds() - start_s) * 1000);
   }
+  last_start_s_.reset();  // the next frame was not this late
   return draw_ms;
 }
 

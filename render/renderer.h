@@ -94,6 +94,7 @@ class Renderer {
   ObjectPass objects_;
   OverlayPass overlay_;
   GlBuffer view_block_;
+  FramesInFlight in_flight_;
   std::vector<std::unique_ptr<View>> views_;
   std::vector<std::string> notices_;
   uint64_t frame_ = 0;

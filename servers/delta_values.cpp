@@ -21,17 +21,35 @@ Lane4 Load(const float* from) {
   return lanes;
 }
 
-// The vertices as three rasters, so that rows can be taken four posts at a time. Relative to the page's middle, where
-// floats are finest. Three spare floats at the end keep the last load inside.
+Lane4 SquareRoots(const Lane4& squared) {
+  const Lane4 roots{std::sqrt(squared[0]), std::sqrt(squared[1]), std::sqrt(squared[2]), std::sqrt(squared[3])};
+  return roots;
+}
+
+// The most of the blocks that the four cells around a post lie in.
+float ErrorAround(Post post, const ErrorBlocks& errors_m) {
+  float most = 0;
+  for (int row = std::max(post.row - 1, 0); row <= std::min(post.row, kCells - 1); ++row) {
+    for (int column = std::max(post.column - 1, 0); column <= std::min(post.column, kCells - 1); ++column) {
+      most = std::max(most, errors_m[static_cast<size_t>(row / kBlockCells * kErrorBlocks + column / kBlockCells)]);
+    }
+  }
+  return most;
+}
+
+// The vertices as three rasters, so that rows can be taken four posts at a time, and what finer pages may add around
+// each as a fourth. Relative to the page's middle, where floats are finest. Three spare floats at the end keep the last
+// load inside.
 class Surface {
  public:
-  explicit Surface(std::span<const TerrainVertex> vertices) {
+  Surface(std::span<const TerrainVertex> vertices, const ErrorBlocks& errors_m) {
     const TerrainVertex& middle = vertices[kVerticesPerPage / 2];
-    for (std::vector<float>* axis : {&x_, &y_, &z_}) axis->resize(kVerticesPerPage + 3);
+    for (std::vector<float>* raster : {&x_, &y_, &z_, &left_out_}) raster->resize(kVerticesPerPage + 3);
     for (size_t i = 0; i < kVerticesPerPage; ++i) {
       x_[i] = vertices[i].x - middle.x;
       y_[i] = vertices[i].y - middle.y;
       z_[i] = vertices[i].z - middle.z;
+      left_out_[i] = ErrorAround(Post{static_cast<int>(i) % kPosts, static_cast<int>(i) / kPosts}, errors_m);
     }
   }
 
@@ -44,9 +62,13 @@ class Surface {
     const glm::vec3 between = at(post) - to;
     return glm::dot(between, between);
   }
+  // How far the full-resolution surface around the post may be from the middle between a and b, if that is drawn.
+  float ErrorBetween(Post post, Post a, Post b) const {
+    return std::sqrt(SquaredDistance(post, 0.5F * (at(a) + at(b)))) + left_out_[static_cast<size_t>(post.index())];
+  }
 
-  // Largest squared distance of posts (first .. last, row) from the plane point that begins at `start` and moves by
-  // `step` a column.
+  // The most, over posts (first .. last, row), of the distance from the plane point that begins at `start` and moves by
+  // `step` a column, and of what finer pages add at the post.
   float RowError(int row, int first, int last, const glm::vec3& start, const glm::vec3& step) const {
     const int offset = row * kPosts;
     const Lane4 lane{0, 1, 2, 3};
@@ -57,16 +79,16 @@ class Surface {
       const Lane4 x = Load(&x_[index]) - (start.x + along * step.x);
       const Lane4 y = Load(&y_[index]) - (start.y + along * step.y);
       const Lane4 z = Load(&z_[index]) - (start.z + along * step.z);
-      Lane4 squared = x * x + y * y + z * z;
+      Lane4 error = SquareRoots(x * x + y * y + z * z) + Load(&left_out_[index]);
       const Lane4 nothing{0, 0, 0, 0};
-      squared = along <= static_cast<float>(last - first) + nothing ? squared : nothing;
-      greatest = squared > greatest ? squared : greatest;
+      error = along <= static_cast<float>(last - first) + nothing ? error : nothing;
+      greatest = error > greatest ? error : greatest;
     }
     return std::max(std::max(greatest[0], greatest[1]), std::max(greatest[2], greatest[3]));
   }
 
  private:
-  std::vector<float> x_, y_, z_;
+  std::vector<float> x_, y_, z_, left_out_;
 };
 
 // The plane through the three corners of a triangle, as a point that is linear in column and row.
@@ -126,24 +148,20 @@ float StraightError(const Surface& surface, const Split& split, Post post, Post 
 }
 
 // The two finest levels hold so few posts that they are tried one by one.
-float SmallDiagonalError(const Surface& surface, const Split& split, Post post, Post apex) {
+float SmallDiagonalError(const Surface& surface, const Split& split, Post apex) {
   const auto between = [&](Post a, Post b) {
-    const Post middle{(a.column + b.column) / 2, (a.row + b.row) / 2};
-    return surface.SquaredDistance(middle, 0.5F * (surface.at(a) + surface.at(b)));
+    return surface.ErrorBetween({(a.column + b.column) / 2, (a.row + b.row) / 2}, a, b);
   };
-  const float own = surface.SquaredDistance(post, 0.5F * (surface.at(split.end_a) + surface.at(split.end_b)));
-  return std::max({own, between(apex, split.end_a), between(apex, split.end_b)});
+  return std::max(between(apex, split.end_a), between(apex, split.end_b));
 }
 
 float OwnError(const Surface& surface, Post post, int level) {
   const Split split = SplitAt(post);
-  if (level == kBisectionLevels - 1) {
-    return surface.SquaredDistance(post, 0.5F * (surface.at(split.end_a) + surface.at(split.end_b)));
-  }
-  float greatest = 0;
+  float greatest = surface.ErrorBetween(post, split.end_a, split.end_b);
+  if (level == kBisectionLevels - 1) return greatest;
   for (const Post apex : {split.apex_a, split.apex_b}) {
     if (!apex.inside()) continue;
-    const float error = level == kBisectionLevels - 2 ? SmallDiagonalError(surface, split, post, apex)
+    const float error = level == kBisectionLevels - 2 ? SmallDiagonalError(surface, split, apex)
                         : level % 2 == 0              ? DiagonalError(surface, split, apex)
                                                       : StraightError(surface, split, post, apex);
     greatest = std::max(greatest, error);
@@ -167,67 +185,40 @@ void ForEachPost(int level, const Visit& visit) {
   }
 }
 
-// The most of the blocks that the four cells around a post lie in.
-float ErrorAround(Post post, const ErrorBlocks& errors_m) {
-  float most = 0;
-  for (int row = std::max(post.row - 1, 0); row <= std::min(post.row, kCells - 1); ++row) {
-    for (int column = std::max(post.column - 1, 0); column <= std::min(post.column, kCells - 1); ++column) {
-      most = std::max(most, errors_m[static_cast<size_t>(row / kBlockCells * kErrorBlocks + column / kBlockCells)]);
-    }
-  }
-  return most;
-}
-
 }  // namespace
 
 std::vector<float> DeltaValues(std::span<const TerrainVertex> vertices, const ErrorBlocks& errors_m) {
   BELVEDERE_CHECK(vertices.size() == kVerticesPerPage);
-  const Surface surface(vertices);
+  const Surface surface(vertices, errors_m);
   std::vector<float> deltas(kVerticesPerPage, 0.0F);
-  std::vector<float> left_out(kVerticesPerPage, 0.0F);  // most of errors_m under the triangles that a post splits
-  // From the finest level up, so that children are known before what they depend on.
-  for (int level = kBisectionLevels - 1; level >= 0; --level) {
-    ForEachPost(level, [&](Post post) {
-      const auto index = static_cast<size_t>(post.index());
-      float delta = 0;
-      if (level == kBisectionLevels - 1) {
-        left_out[index] = ErrorAround(post, errors_m);
-      } else {
-        for (const Post child : ChildrenOf(post)) {
-          if (!child.inside()) continue;
-          delta = std::max(delta, deltas[static_cast<size_t>(child.index())]);
-          left_out[index] = std::max(left_out[index], left_out[static_cast<size_t>(child.index())]);
-        }
-      }
-      deltas[index] = std::max(delta, std::sqrt(OwnError(surface, post, level)) + left_out[index]);
-    });
+  for (int level = 0; level < kBisectionLevels; ++level) {
+    ForEachPost(level, [&](Post post) { deltas[static_cast<size_t>(post.index())] = OwnError(surface, post, level); });
   }
-  // The corners split nothing and are always drawn; all else depends on them.
-  const float greatest = deltas[kVerticesPerPage / 2];
+  // The corners split nothing and are always drawn.
+  const float greatest = *std::max_element(deltas.begin(), deltas.end());
   for (const Post corner : {Post{0, 0}, Post{kCells, 0}, Post{0, kCells}, Post{kCells, kCells}}) {
     deltas[static_cast<size_t>(corner.index())] = greatest;
   }
   return deltas;
 }
 
-std::array<float, kBisections> ReachOfLevels(std::span<const TerrainVertex> vertices) {
+std::array<float, kBisections> SpreadOfLevels(std::span<const TerrainVertex> vertices) {
   BELVEDERE_CHECK(vertices.size() == kVerticesPerPage);
   static_assert(kBisections == kBisectionLevels);
   constexpr float kRoundedUp = 1.000001F;
-  const Surface surface(vertices);
-  std::array<float, kBisections> reach{};
-  for (int level = kBisectionLevels - 2; level >= 0; --level) {
+  const Surface surface(vertices, {});
+  std::array<float, kBisections> spread{};
+  for (int level = 0; level < kBisectionLevels; ++level) {
     float greatest = 0;
     ForEachPost(level, [&](Post post) {
-      const glm::vec3 position = surface.at(post);
-      for (const Post child : ChildrenOf(post)) {
-        if (child.inside()) greatest = std::max(greatest, surface.SquaredDistance(child, position));
+      const Split split = SplitAt(post);
+      for (const Post corner : {split.end_a, split.end_b, split.apex_a, split.apex_b}) {
+        if (corner.inside()) greatest = std::max(greatest, surface.SquaredDistance(corner, surface.at(post)));
       }
     });
-    const auto index = static_cast<size_t>(level);
-    reach[index] = (reach[index + 1] + std::sqrt(greatest)) * kRoundedUp;
+    spread[static_cast<size_t>(level)] = std::sqrt(greatest) * kRoundedUp;
   }
-  return reach;
+  return spread;
 }
 
 }  // namespace belvedere

@@ -1,5 +1,5 @@
-// Delta values: how far the drawn surface may be from the full one where a post, and all that depend on it, are left
-// out. terrain_builder.h says what they promise, bisection.h which post splits what.
+// Delta values: how far the drawn surface may be from the finest one where a post is left out and the two triangles
+// that it splits are drawn whole. page.h says what they promise, bisection.h which post splits what.
 //
 // Units: metres. Threads: pure.
 #pragma once
@@ -14,11 +14,12 @@
 
 namespace belvedere {
 
-// vertices: kVerticesPerPage. errors_m: what the page leaves out with every post drawn, block by block; the most of the
-// blocks that a post's triangles touch is added to its delta value.
+// vertices: kVerticesPerPage. errors_m: what the page leaves out with every post drawn, block by block. A delta value
+// is the most, over the posts that the triangles without the post cover, of a post's distance from them and the
+// errors_m around it: taken post by post, so that a cliff and a rough block elsewhere do not add up.
 std::vector<float> DeltaValues(std::span<const TerrainVertex> vertices, const ErrorBlocks& errors_m);
 
-// For each level of bisection, a distance within which all posts lie that depend on one of that level.
-std::array<float, kBisections> ReachOfLevels(std::span<const TerrainVertex> vertices);
+// For each level of bisection, the greatest distance from a post to a corner of the triangles that it splits.
+std::array<float, kBisections> SpreadOfLevels(std::span<const TerrainVertex> vertices);
 
 }  // namespace belvedere

@@ -174,7 +174,7 @@ std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input) {
   page->vertices = VerticesOf(input.node, field);
   page->error_m = *std::max_element(errors_m.begin(), errors_m.end());
   page->deltas = DeltaValues(page->vertices, errors_m);
-  page->reach_m = ReachOfLevels(page->vertices);
+  page->spread_m = SpreadOfLevels(page->vertices);
   page->min_height_m = static_cast<float>(min_height_m);
   page->max_height_m = static_cast<float>(max_height_m);
   const BoundingSphere bounds = BoundsOf(input.node, min_height_m, max_height_m);

@@ -56,7 +56,7 @@ using ErrorBlocks = std::array<float, static_cast<size_t>(kErrorBlocks) * kError
 struct ElevationPage final : Page {
   std::vector<int32_t> heights_mm;  // kElevationSide^2
   float min_m = 0, max_m = 0;       // over this page's posts and all finer pages under it
-  // No point of any finer page under this one lies further, vertically, from this page's own full-resolution
+  // No point of the finest pages under this one lies further, vertically, from this page's own full-resolution
   // triangles; 0 where nothing is finer. block_errors_m says it of each block, error_m of them all.
   ErrorBlocks block_errors_m{};
   float error_m = 0;
@@ -103,12 +103,11 @@ inline constexpr int kBisections = 2 * kCellsLog2;  // levels of bisection from 
 struct TerrainPage final : Page {
   Quadcode node;
   std::vector<TerrainVertex> vertices;  // kVerticesPerPage
-  // Delta value of each post: an upper bound, in metres, of the distance between the full-resolution surface and the
-  // drawn one near the post if the post and all that depend on it are left out. Never less than that of a post that
-  // depends on it; what finer pages add near the post is part of it.
+  // Delta value of each post: an upper bound, in metres, of the distance between the finest surface and the two
+  // triangles that the post splits (bisection.h), if they are drawn whole; what finer pages add is part of it.
   std::vector<float> deltas;  // kVerticesPerPage
-  // Every post that depends on one of bisection level l lies within reach_m[l] of it; decreasing.
-  std::array<float, kBisections> reach_m{};
+  // Every point of the triangles that a post of bisection level l splits lies within spread_m[l] of it.
+  std::array<float, kBisections> spread_m{};
   float error_m = 0;  // what is left when every post of this page is drawn; 0 where the data end
   float min_height_m = 0, max_height_m = 0;
   glm::dvec3 center_ecef{};  // bounding sphere of the surface at every level under this node

@@ -57,6 +57,7 @@ struct ImageUse {
 };
 
 struct TerrainSlot {
+  const TerrainPage* page = nullptr;  // pinned by the list
   int32_t slot = 0;
   uint32_t frame = 0;         // index -> frames
   GridPoint south_west;       // of the page's quadnode

@@ -1,10 +1,13 @@
 // Station figures: what a whole station does under load, off-screen, in one process.
 //
-//   station_figures views DATASET             bytes in the cache with three views of one place over those with one
-//   station_figures feed DATASET [SECONDS]    20,000 Entity State PDUs a second from 5,000 entities while three views
-//   draw station_figures malformed DATASET FOLDER  sends every .bin file of the folder to a running station that goes
-//   on drawing station_figures soak DATASET [MINUTES]    a random flight in a cache of 256 MiB: bytes and memory of the
-//   process by the minute
+//   station_figures views DATASET
+//       bytes in the cache with three views of one place over those with one
+//   station_figures feed DATASET [SECONDS]
+//       20,000 Entity State PDUs a second from 5,000 entities while three views draw
+//   station_figures malformed DATASET FOLDER
+//       sends every .bin file of the folder to a running station, which goes on drawing
+//   station_figures soak DATASET [MINUTES]
+//       a random flight in a cache of 256 MiB: bytes and memory of the process by the minute
 //
 // Prints what was measured; exits 1 when a promise of docs/performance.md is broken.
 
@@ -187,7 +190,8 @@ int Soak(const std::string& dataset, double minutes) {
   const double start_s = Clock::System().NowSeconds();
   std::vector<size_t> by_minute;
   uint64_t number = 1;
-  for (double now_s = 0; now_s < minutes * 60; now_s = Clock::System().NowSeconds() - start_s) {
+  for (double now_s = 0; static_cast<double>(by_minute.size()) < minutes;
+       now_s = Clock::System().NowSeconds() - start_s) {
     if (now_s >= leg_start_s + leg_s) {
       from = to;
       const bool near = uniform(0, 1) < 0.7;  // most legs over the inset, some to the other side of the world

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "managers/cut.h"
+#include "runtime/earth/bisection.h"
 #include "runtime/earth/ellipsoid.h"
 #include "runtime/earth/frame.h"
 
@@ -14,56 +15,32 @@
 
 namespace belvedere::test {
 
-// Delta values of one page: log-uniform noise, made nested as page.h promises.
-class RandomDeltas {
- public:
-  explicit RandomDeltas(std::mt19937& random) : random_(random) {}
-
-  std::vector<float> Make() {
-    deltas_.assign(kVerticesPerPage, 0.0F);
-    std::uniform_real_distribution<float> exponent(-6.0F, 12.0F);
-    for (float& delta : deltas_) delta = std::exp2(exponent(random_));
-    // A post has two triangles; nest until nothing changes, one pass a level from the finest up.
-    Nest(kCells, kCells * kPosts + kCells, 0, 0);
-    Nest(kCells * kPosts, 0, kCells * kPosts + kCells, 0);
-    Nest(kCells, kCells * kPosts + kCells, 0, 0);
-    Nest(kCells * kPosts, 0, kCells * kPosts + kCells, 0);
-    for (int pass = 0; pass < kBisections; ++pass) {
-      Nest(kCells, kCells * kPosts + kCells, 0, 0);
-      Nest(kCells * kPosts, 0, kCells * kPosts + kCells, 0);
-    }
-    return deltas_;
+// Delta values of one page: log-uniform noise, large at the coarse levels, so that a search from the roots gets through
+// to where some triangles are split and others are not.
+inline std::vector<float> RandomDeltas(std::mt19937& random) {
+  constexpr int kSurelySplit = 8;
+  std::vector<float> deltas(kVerticesPerPage);
+  std::uniform_real_distribution<float> any(-6.0F, 12.0F);
+  std::uniform_real_distribution<float> large(9.0F, 12.0F);
+  for (int index = 0; index < kVerticesPerPage; ++index) {
+    const int level = LevelOf(Post{index % kPosts, index / kPosts});
+    deltas[static_cast<size_t>(index)] = std::exp2(level < kSurelySplit ? large(random) : any(random));
   }
+  return deltas;
+}
 
- private:
-  float Nest(int a, int b, int c, int level) {
-    if (level == kBisections) return 0.0F;
-    const int middle = (b + c) / 2;
-    const float below = std::max(Nest(middle, a, b, level + 1), Nest(middle, c, a, level + 1));
-    float& own = deltas_[static_cast<size_t>(middle)];
-    own = std::max(own, below);
-    return own;
-  }
-
-  std::mt19937& random_;
-  std::vector<float> deltas_;
-};
-
-// Leaves in reach_m[level] the greatest distance from a post of that level to one of the next that depends on it.
-inline void MeasureReach(TerrainPage& page, int a, int b, int c, int level) {
+// Leaves in spread_m[level] the greatest distance from a post of that level to a corner of a triangle that it splits.
+inline void MeasureSpread(TerrainPage& page, int a, int b, int c, int level) {
   if (level == kBisections) return;
   const int middle = (b + c) / 2;
   const auto at = [&](int post) {
     const TerrainVertex& v = page.vertices[static_cast<size_t>(post)];
     return glm::vec3(v.x, v.y, v.z);
   };
-  if (level + 1 < kBisections) {
-    float& reach = page.reach_m[static_cast<size_t>(level)];
-    for (const int child : {(a + b) / 2, (c + a) / 2})
-      reach = std::max(reach, 1.001F * glm::distance(at(middle), at(child)));
-  }
-  MeasureReach(page, middle, a, b, level + 1);
-  MeasureReach(page, middle, c, a, level + 1);
+  float& spread = page.spread_m[static_cast<size_t>(level)];
+  for (const int corner : {a, b, c}) spread = std::max(spread, 1.001F * glm::distance(at(middle), at(corner)));
+  MeasureSpread(page, middle, a, b, level + 1);
+  MeasureSpread(page, middle, c, a, level + 1);
 }
 
 // A page of flat ground with random delta values.
@@ -84,10 +61,8 @@ inline std::unique_ptr<TerrainPage> FlatPage(Quadcode node, std::vector<float> d
       page->radius_m = std::max(page->radius_m, glm::distance(ecef, page->center_ecef));
     }
   }
-  MeasureReach(*page, kCells, kCells * kPosts + kCells, 0, 0);
-  MeasureReach(*page, kCells * kPosts, 0, kCells * kPosts + kCells, 0);
-  for (int level = kBisections - 2; level >= 0; --level)
-    page->reach_m[static_cast<size_t>(level)] += page->reach_m[static_cast<size_t>(level) + 1];
+  MeasureSpread(*page, kCells, kCells * kPosts + kCells, 0, 0);
+  MeasureSpread(*page, kCells * kPosts, 0, kCells * kPosts + kCells, 0);
   return page;
 }
 

@@ -29,21 +29,24 @@ std::shared_ptr<ElevationPage> Rough(std::mt19937& random) {
   return page;
 }
 
-TEST(SurfaceError, BoundsEveryPointOfEveryFinerSurface) {
+BoundedPage Finest(std::shared_ptr<ElevationPage> page) {
+  CellDeviations deviations = BoundPage(*page, nullptr);
+  return {std::move(page), std::move(deviations)};
+}
+
+TEST(SurfaceError, BoundsEveryPointOfTheFinestSurface) {
   std::mt19937 random(11);
   auto root = Rough(random);
-  std::array<std::shared_ptr<const ElevationPage>, 4> children;
-  std::array<std::shared_ptr<const ElevationPage>, 4> grandchildren;  // of child 2
+  std::array<BoundedPage, 4> children;
+  std::array<BoundedPage, 4> grandchildren;  // of child 2
   for (auto& page : grandchildren) {
-    auto made = Rough(random);
-    BoundPage(*made, nullptr);
-    EXPECT_EQ(made->error_m, 0.0f);
-    page = made;
+    page = Finest(Rough(random));
+    EXPECT_EQ(page.page->error_m, 0.0f);
   }
   for (size_t which = 0; which < 4; ++which) {
     auto made = Rough(random);
-    BoundPage(*made, which == 2 ? &grandchildren : nullptr);
-    children[which] = made;
+    children[which].deviations = BoundPage(*made, which == 2 ? &grandchildren : nullptr);
+    children[which].page = made;
   }
   BoundPage(*root, &children);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -54,18 +57,14 @@ TEST(SurfaceError, BoundsEveryPointOfEveryFinerSurface) {
     const double coarse = TriangleHeight(*root, x, y);
     const int which = (x >= kCells / 2 ? 1 : 0) + (y >= kCells / 2 ? 2 : 0);
     const double cx = 2 * x - (which % 2) * kCells, cy = 2 * y - (which / 2) * kCells;
-    double fine = TriangleHeight(*children[static_cast<size_t>(which)], cx, cy);
+    double fine = TriangleHeight(*children[static_cast<size_t>(which)].page, cx, cy);
+    if (which == 2) {
+      const int below = (cx >= kCells / 2 ? 1 : 0) + (cy >= kCells / 2 ? 2 : 0);
+      fine = TriangleHeight(*grandchildren[static_cast<size_t>(below)].page, 2 * cx - (below % 2) * kCells,
+                            2 * cy - (below / 2) * kCells);
+    }
     double& in_block =
         by_block[static_cast<size_t>(y / kBlockCells) * kErrorBlocks + static_cast<size_t>(x / kBlockCells)];
-    in_block = std::max(in_block, std::abs(fine - coarse));
-    largest = std::max(largest, in_block);
-    const auto block =
-        static_cast<size_t>(static_cast<int>(y) / kBlockCells * kErrorBlocks + static_cast<int>(x) / kBlockCells);
-    ASSERT_LE(std::abs(fine - coarse), static_cast<double>(root->block_errors_m[block]));
-    if (which != 2) continue;
-    const int below = (cx >= kCells / 2 ? 1 : 0) + (cy >= kCells / 2 ? 2 : 0);
-    fine = TriangleHeight(*grandchildren[static_cast<size_t>(below)], 2 * cx - (below % 2) * kCells,
-                          2 * cy - (below / 2) * kCells);
     in_block = std::max(in_block, std::abs(fine - coarse));
     largest = std::max(largest, in_block);
   }
@@ -77,36 +76,60 @@ TEST(SurfaceError, BoundsEveryPointOfEveryFinerSurface) {
   EXPECT_GT(largest, static_cast<double>(root->error_m) / 3) << "the bound is far from what it bounds";
 }
 
+// With one level below, the bound of a block is what a search through all the posts under it finds.
 TEST(SurfaceError, IsTheLargestDistanceAtPostsOfEachBlock) {
   std::mt19937 random(12);
   const auto parent = Rough(random);
-  const auto child = Rough(random);
-  for (int which = 0; which < 4; ++which) {
-    const auto distances = DistanceFromParent(*parent, *child, which);
-    for (int block = 0; block < kErrorBlocks * kErrorBlocks; ++block) {
-      double largest = 0;
-      for (int row = block / kErrorBlocks * kBlockCells; row <= (block / kErrorBlocks + 1) * kBlockCells; ++row) {
-        for (int column = block % kErrorBlocks * kBlockCells; column <= (block % kErrorBlocks + 1) * kBlockCells;
-             ++column) {
-          const double x = (which % 2 * kCells + column) / 2.0, y = (which / 2 * kCells + row) / 2.0;
-          largest = std::max(largest, std::abs(child->at(column, row) / 1000.0 - TriangleHeight(*parent, x, y)));
-        }
+  std::array<BoundedPage, 4> children;
+  for (BoundedPage& child : children) child = Finest(Rough(random));
+  BoundPage(*parent, &children);
+  for (int block = 0; block < kErrorBlocks * kErrorBlocks; ++block) {
+    double largest = 0;
+    for (int row = 2 * (block / kErrorBlocks) * kBlockCells; row <= 2 * (block / kErrorBlocks + 1) * kBlockCells;
+         ++row) {
+      for (int column = 2 * (block % kErrorBlocks) * kBlockCells;
+           column <= 2 * (block % kErrorBlocks + 1) * kBlockCells; ++column) {
+        // A post on the line between two children is looked up in the one whose block it bounds.
+        const int east = 2 * (block % kErrorBlocks) * kBlockCells >= kCells ? 1 : 0;
+        const int north = 2 * (block / kErrorBlocks) * kBlockCells >= kCells ? 1 : 0;
+        const ElevationPage& child = *children[static_cast<size_t>(2 * north + east)].page;
+        const double height_m = child.at(column - east * kCells, row - north * kCells) / 1000.0;
+        largest = std::max(largest, std::abs(height_m - TriangleHeight(*parent, column / 2.0, row / 2.0)));
       }
-      EXPECT_NEAR(distances[static_cast<size_t>(block)], largest, 1e-6);
     }
+    EXPECT_NEAR(parent->block_errors_m[static_cast<size_t>(block)], largest, 1e-3);
   }
+}
+
+// What one level raises and the next lowers again does not count twice.
+TEST(SurfaceError, WhatTheNextLevelTakesBackIsNotAdded) {
+  const auto flat = [](int32_t height_mm) {
+    auto page = std::make_shared<ElevationPage>();
+    page->heights_mm.assign(static_cast<size_t>(kElevationSide) * kElevationSide, height_mm);
+    return page;
+  };
+  auto root = flat(0);
+  std::array<BoundedPage, 4> children, grandchildren;
+  for (BoundedPage& page : grandchildren) page = Finest(flat(20'000));
+  for (BoundedPage& child : children) {
+    auto page = flat(100'000);
+    child.deviations = BoundPage(*page, &grandchildren);
+    EXPECT_EQ(page->error_m, 80.0f);
+    child.page = page;
+  }
+  BoundPage(*root, &children);
+  EXPECT_EQ(root->error_m, 20.0f);
 }
 
 // One cliff in a far corner leaves the other blocks as good as they are.
 TEST(SurfaceError, ACliffCountsForItsBlockAlone) {
   auto page = std::make_shared<ElevationPage>();
   page->heights_mm.assign(static_cast<size_t>(kElevationSide) * kElevationSide, 0);
-  std::array<std::shared_ptr<const ElevationPage>, 4> children;
+  std::array<BoundedPage, 4> children;
   for (size_t which = 0; which < 4; ++which) {
     auto made = std::make_shared<ElevationPage>(*page);
     if (which == 1) made->heights_mm[static_cast<size_t>((3 + kApron) * kElevationSide + 100 + kApron)] = 700000;
-    BoundPage(*made, nullptr);
-    children[which] = made;
+    children[which] = Finest(made);
   }
   BoundPage(*page, &children);
   EXPECT_EQ(page->error_m, 700.0f);
@@ -119,13 +142,12 @@ TEST(SurfaceError, ACliffCountsForItsBlockAlone) {
 TEST(SurfaceError, ExtremesIncludeWhatIsFiner) {
   std::mt19937 random(13);
   auto page = Rough(random);
-  std::array<std::shared_ptr<const ElevationPage>, 4> children;
+  std::array<BoundedPage, 4> children;
   for (size_t which = 0; which < 4; ++which) {
     auto made = Rough(random);
     if (which == 3) made->heights_mm[static_cast<size_t>((40 + kApron) * kElevationSide + 9)] = 8848860;
     if (which == 1) made->heights_mm[static_cast<size_t>((4 + kApron) * kElevationSide + 70)] = -10994000;
-    BoundPage(*made, nullptr);
-    children[which] = made;
+    children[which] = Finest(made);
   }
   BoundPage(*page, &children);
   EXPECT_GE(page->max_m, 8848.86f);

@@ -154,6 +154,21 @@ TEST_F(Drawing, BothCapturesOfOneListHaveTheSameBytes) {
   EXPECT_GT(once.triangles, 0U);
 }
 
+// While pages come, coarse ground may be drawn over the eye; under it there would be no picture.
+TEST_F(Drawing, AnEyeUnderTheDrawnGroundLooksFromJustOverIt) {
+  Load(Block(10, 10, 10, 3), [](double, double) { return 900.0; });
+  for (const double pitch_deg : {-90.0, -40.0, -25.0}) {
+    const Picture picture = Draw(LookAt({10, 10, 400}, 0, pitch_deg, kWidth, kHeight));
+    const double eye_m = ToGeodetic(picture.matrices.eye_ecef).height_m;
+    EXPECT_GT(eye_m, 900.0);
+    EXPECT_LT(eye_m, 910.0);
+    EXPECT_FALSE(IsMagenta(picture, Middle(picture)));
+    EXPECT_FALSE(IsMagenta(picture, picture.depth_m.size() - 1));
+  }
+  const Picture over = Draw(LookAt({10, 10, 1400}, 0, -90, kWidth, kHeight));
+  EXPECT_NEAR(ToGeodetic(over.matrices.eye_ecef).height_m, 1400.0, 1e-6);
+}
+
 TEST_F(Drawing, ImagesColourTheirQuadnode) {
   const std::vector<Quadcode> nodes = Block(10, 10, 12, 1);
   Load(nodes, [](double, double) { return 0.0; });

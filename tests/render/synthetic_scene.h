@@ -153,11 +153,12 @@ inline void AddSurface(DisplayList& list, Scene& scene, const std::vector<Quadco
   std::vector<BoundingSphere> volumes;
   for (const Quadcode node : nodes) {
     PagePin pin = scene.Find(scene.terrain_type(), node);
-    volumes.push_back({pin.as<TerrainPage>().center_ecef, pin.as<TerrainPage>().radius_m});
+    const TerrainPage* page = &pin.as<TerrainPage>();
+    volumes.push_back({page->center_ecef, page->radius_m});
     const int slot = PinInto(list, std::move(pin));
     BELVEDERE_CHECK(slot >= 0);
     slots[{node.column(), node.row()}] = slot;
-    list.slots.push_back({slot, FrameIndex(list, node), node.SouthWest(), node.PostSpacing()});
+    list.slots.push_back({page, slot, FrameIndex(list, node), node.SouthWest(), node.PostSpacing()});
   }
   for (size_t i = 0; i < nodes.size(); ++i) {
     const Quadcode node = nodes[i];

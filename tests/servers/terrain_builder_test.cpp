@@ -159,17 +159,14 @@ class BruteForce {
  private:
   glm::dvec3 At(Post post) const { return PositionOf(page_.vertices[static_cast<size_t>(post.index())]); }
 
-  // Returns the largest error of the triangle and of all within it.
-  double Split(Post a, Post b, Post c, int level) {
-    if (level == kBisectionLevels) return 0;
+  void Split(Post a, Post b, Post c, int level) {
+    if (level == kBisectionLevels) return;
     const Post middle{(b.column + c.column) / 2, (b.row + c.row) / 2};
     const auto index = static_cast<size_t>(middle.index());
     levels_[index] = level;
-    double greatest = ErrorWithin(a, b, c);
-    greatest = std::max(greatest, Split(middle, a, b, level + 1));
-    greatest = std::max(greatest, Split(middle, c, a, level + 1));
-    deltas_[index] = std::max(deltas_[index], greatest);
-    return greatest;
+    deltas_[index] = std::max(deltas_[index], ErrorWithin(a, b, c));
+    Split(middle, a, b, level + 1);
+    Split(middle, c, a, level + 1);
   }
 
   double ErrorWithin(Post a, Post b, Post c) const {
@@ -192,7 +189,7 @@ class BruteForce {
   std::vector<int> levels_;
 };
 
-TEST(TerrainBuilder, DeltaValuesBoundWhatTriangulationsLeaveOut) {
+TEST(TerrainBuilder, DeltaValuesAreTheErrorsOfTheTrianglesThatAPostSplits) {
   for (const Quadcode node :
        {Quadcode::Root(20), Quadcode::Containing(37, -118, 9), Quadcode::FromColumnRow(10, 17, 0)}) {
     const auto page = Build(node);
@@ -202,34 +199,28 @@ TEST(TerrainBuilder, DeltaValuesBoundWhatTriangulationsLeaveOut) {
       const Post at{static_cast<int>(post) % kPosts, static_cast<int>(post) / kPosts};
       ASSERT_EQ(LevelOf(at), expected.level(post)) << at.column << " " << at.row;
       if (LevelOf(at) == kNoLevel) continue;
-      // Never less than what it bounds; more only where a dependent across the diagonal raises it.
-      ASSERT_GE(page->deltas[post], expected.delta(post) - tolerance_m) << at.column << " " << at.row;
-      if (LevelOf(at) == 0 || LevelOf(at) == kBisectionLevels - 1) {
-        ASSERT_NEAR(page->deltas[post], expected.delta(post), tolerance_m) << at.column << " " << at.row;
-      }
+      ASSERT_NEAR(page->deltas[post], expected.delta(post), tolerance_m) << at.column << " " << at.row;
     }
   }
 }
 
-TEST(TerrainBuilder, DeltaValuesAndReachesAreNested) {
+TEST(TerrainBuilder, SpreadsHoldTheTrianglesThatAPostSplits) {
   const auto page = Build(Quadcode::Containing(37, -118, 9));
-  for (size_t level = 0; level + 1 < page->reach_m.size(); ++level)
-    EXPECT_GT(page->reach_m[level], page->reach_m[level + 1]);
-  for (int post = 0; post < kVerticesPerPage; ++post) {
-    const Post at{post % kPosts, post / kPosts};
-    const int level = LevelOf(at);
-    if (level == kNoLevel || level == kBisectionLevels - 1) continue;
-    for (const Post child : ChildrenOf(at)) {
-      if (!child.inside()) continue;
-      ASSERT_EQ(LevelOf(child), level + 1);
-      const auto own = static_cast<size_t>(at.index());
-      const auto below = static_cast<size_t>(child.index());
-      ASSERT_GE(page->deltas[own], page->deltas[below]);
-      const double between_m = glm::distance(PositionOf(page->vertices[own]), PositionOf(page->vertices[below]));
-      ASSERT_LE(between_m + page->reach_m[static_cast<size_t>(level) + 1], page->reach_m[static_cast<size_t>(level)]);
-      const Split split = SplitAt(child);
-      ASSERT_TRUE(split.apex_a == at || split.apex_b == at);
+  std::array<double, kBisections> greatest{};
+  for (int index = 0; index < kVerticesPerPage; ++index) {
+    const Post post{index % kPosts, index / kPosts};
+    if (LevelOf(post) == kNoLevel) continue;
+    const Split split = SplitAt(post);
+    for (const Post corner : {split.end_a, split.end_b, split.apex_a, split.apex_b}) {
+      if (!corner.inside()) continue;
+      double& here = greatest[static_cast<size_t>(LevelOf(post))];
+      here = std::max(here, glm::distance(PositionOf(page->vertices[static_cast<size_t>(index)]),
+                                          PositionOf(page->vertices[static_cast<size_t>(corner.index())])));
     }
+  }
+  for (size_t level = 0; level < greatest.size(); ++level) {
+    EXPECT_GE(page->spread_m[level], greatest[level] * (1 - 1e-6));
+    EXPECT_LE(page->spread_m[level], greatest[level] * (1 + 1e-5));
   }
 }
 

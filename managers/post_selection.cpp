@@ -1,0 +1,114 @@
+#include "managers/post_selection.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace belvedere {
+namespace {
+
+constexpr float kAlwaysDrawn_m = 12'000.0F;  // delta value from which a post is drawn whatever the view
+constexpr float kLeastDepth_m = 1e-3F;
+
+constexpr int kSouthWest = Post{0, 0}.index();
+constexpr int kSouthEast = Post{kCells, 0}.index();
+constexpr int kNorthWest = Post{0, kCells}.index();
+constexpr int kNorthEast = Post{kCells, kCells}.index();
+
+}  // namespace
+
+// One quadnode and the view of it, in the quadnode's frame.
+struct PostSelection::LocalView {
+  const TerrainPage& page;
+  glm::vec3 eye;
+  glm::vec3 forward;
+  float cos_corner;
+  bool perspective;
+  float scale;            // error in metres times this is the least depth at which it keeps the bound
+  float nearest_depth_m;  // CutNode::nearest_depth_m
+  float left_over_m;      // what the quadnode leaves whatever is drawn
+
+  LocalView(const CutNode& node, const Sight& sight, const Frame& frame, double error_px)
+      : page(*node.page),
+        eye(frame.ToFrame(sight.eye_ecef)),
+        forward(sight.forward_ecef * frame.ecef_from_frame),
+        cos_corner(static_cast<float>(sight.cos_corner)),
+        perspective(sight.perspective),
+        scale(static_cast<float>(node.error_scale / error_px)),
+        nearest_depth_m(static_cast<float>(node.nearest_depth_m)),
+        left_over_m(node.finest ? 0.0F : page.error_m) {}
+
+  // Least depth of any point of the triangles that the post splits.
+  float LeastDepth(int post, int level) const {
+    const float spread_m = page.spread_m[static_cast<size_t>(level)];
+    const TerrainVertex& vertex = page.vertices[static_cast<size_t>(post)];
+    const glm::vec3 away(vertex.x - eye.x, vertex.y - eye.y, vertex.z - eye.z);
+    // What is seen lies within cos_corner of the line of view; what lies beside the picture counts as if it did.
+    return std::max({nearest_depth_m, glm::dot(away, forward) - spread_m, (glm::length(away) - spread_m) * cos_corner});
+  }
+};
+
+float PostSelection::Run(const CutNode& node, const Sight& sight, const Frame& frame, double error_px,
+                         std::vector<PostTriangle>& out) {
+  const LocalView view(node, sight, frame, error_px);
+  states_.fill(kUnseen);
+  for (const int corner : {kSouthWest, kSouthEast, kNorthWest, kNorthEast})
+    states_[static_cast<size_t>(corner)] = kDrawn;
+  worst_ = 0;
+  Test(Post{kCells / 2, kCells / 2}, 0, view);
+  while (!newly_drawn_.empty()) {
+    const int index = newly_drawn_.back();
+    newly_drawn_.pop_back();
+    const Post post{index % kPosts, index / kPosts};
+    const Split split = SplitAt(post);
+    for (const Post parent : {split.apex_a, split.apex_b}) {
+      if (parent.inside()) Draw(parent);
+    }
+    const int level = LevelOf(post);
+    if (level + 1 == kBisectionLevels) continue;
+    for (const Post child : ChildrenOf(post)) {
+      if (child.inside()) Test(child, level + 1, view);
+    }
+  }
+  Emit(kSouthEast, kNorthEast, kSouthWest, 0, out);
+  Emit(kNorthWest, kSouthWest, kNorthEast, 0, out);
+  return worst_;
+}
+
+void PostSelection::Draw(Post post) {
+  State& state = states_[static_cast<size_t>(post.index())];
+  if (state == kDrawn) return;
+  state = kDrawn;
+  newly_drawn_.push_back(static_cast<uint16_t>(post.index()));
+}
+
+void PostSelection::Test(Post post, int level, const LocalView& view) {
+  const auto index = static_cast<size_t>(post.index());
+  if (states_[index] != kUnseen) return;
+  const float delta_m = view.page.deltas[index];
+  // Whoever jumps to the other side of the world finds it round, also in the list that was made before the jump.
+  if (delta_m > kAlwaysDrawn_m) return Draw(post);
+  // A quadnode that must serve although its own posts are too coarse draws what its relief asks and no more.
+  const float error = std::max(0.0F, delta_m - view.left_over_m) * view.scale;
+  // Most posts are done with before their place is looked up in memory.
+  float least_depth_m = view.perspective ? view.nearest_depth_m : 1.0F;
+  if (error > least_depth_m && view.perspective) least_depth_m = view.LeastDepth(post.index(), level);
+  if (error > std::max(least_depth_m, kLeastDepth_m)) return Draw(post);
+  states_[index] = kLeftOut;
+  worst_ = std::max(worst_, error / std::max(least_depth_m, kLeastDepth_m));
+}
+
+void PostSelection::Emit(int a, int b, int c, int level, std::vector<PostTriangle>& out) const {
+  if (level < kBisectionLevels) {
+    const int middle = (b + c) / 2;  // exact in posts numbered row by row: rows and columns halve separately
+    if (states_[static_cast<size_t>(middle)] == kDrawn) {
+      Emit(middle, a, b, level + 1, out);
+      Emit(middle, c, a, level + 1, out);
+      return;
+    }
+  }
+  out.push_back({static_cast<uint16_t>(a), static_cast<uint16_t>(b), static_cast<uint16_t>(c)});
+}
+
+}  // namespace belvedere

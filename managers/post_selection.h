@@ -1,0 +1,47 @@
+// Post selection: within one quadnode, chooses the posts to draw, so that the triangles between them keep the bound,
+// and hands out the triangles.
+//
+// It is a greedy full search: two root triangles are bisected, and a triangle is split at the middle of its hypotenuse
+// when the delta value of that post, seen from the nearest point of the triangles that it splits, is over the bound. A
+// post needs its two parents (bisection.h), which are then drawn too, whatever their own error; so the triangles meet
+// edge to edge. A post is looked at once, and only when a triangle that it would split exists: the work is proportional
+// to what is drawn.
+//
+// Source of the bisection: Evans, Kirkpatrick, Townsend, "Right-triangulated irregular networks" (Algorithmica 2001).
+// Units: pixels, metres. Threads: one an object.
+#pragma once
+
+#include "managers/cut.h"
+#include "runtime/earth/bisection.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace belvedere {
+
+struct PostTriangle {
+  uint16_t a, b, c;  // posts; right angle at a, counter-clockwise seen from above
+};
+
+class PostSelection {
+ public:
+  // Appends the quadnode's triangles to `out`. Returns the largest error that they may leave, in units of the bound.
+  // frame: of the quadnode.
+  float Run(const CutNode& node, const Sight& sight, const Frame& frame, double error_px,
+            std::vector<PostTriangle>& out);
+
+ private:
+  struct LocalView;
+  enum State : uint8_t { kUnseen, kLeftOut, kDrawn };
+
+  void Draw(Post post);
+  void Test(Post post, int level, const LocalView& view);
+  void Emit(int a, int b, int c, int level, std::vector<PostTriangle>& out) const;
+
+  std::array<State, kVerticesPerPage> states_{};
+  std::vector<uint16_t> newly_drawn_;
+  float worst_ = 0;
+};
+
+}  // namespace belvedere

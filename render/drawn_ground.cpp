@@ -1,0 +1,96 @@
+#include "render/drawn_ground.h"
+
+#include "runtime/earth/quadcode.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+namespace belvedere {
+namespace {
+
+constexpr double kSlack = 1e-9;  // of a triangle's share: places on an edge belong to both sides
+
+struct GridVertex {
+  double east = 0, north = 0;  // grid units from the quadnode's south-west corner
+  const TerrainSlot* slot = nullptr;
+  uint32_t post = 0;
+};
+
+// Vertices of one quadnode's triangles: almost all in its own slot, some at its borders in a neighbour's.
+class Vertices {
+ public:
+  Vertices(const DisplayList& list, const TerrainSlot& own) : list_(list), own_(own) {}
+
+  // east_at_pole: a pole is a point of every meridian.
+  GridVertex At(uint32_t number, double east_at_pole) const {
+    const auto slot_number = static_cast<int32_t>(number / kVerticesPerPage);
+    GridVertex vertex;
+    vertex.slot = slot_number == own_.slot ? &own_ : Find(slot_number);
+    vertex.post = number % kVerticesPerPage;
+    const uint32_t x = vertex.slot->south_west.x + vertex.post % kPosts * vertex.slot->post_spacing;
+    const uint32_t y = vertex.slot->south_west.y + vertex.post / kPosts * vertex.slot->post_spacing;
+    const bool pole = y == 0 || y == kGridNorthPole;
+    vertex.east = pole ? east_at_pole : static_cast<double>(x - own_.south_west.x);  // wraps at 180 E
+    vertex.north = static_cast<double>(y - own_.south_west.y);
+    return vertex;
+  }
+
+  double HeightOf(const GridVertex& vertex) const {
+    const TerrainVertex& v = vertex.slot->page->vertices[vertex.post];
+    return ToGeodetic(list_.frames[vertex.slot->frame].ToEcef({v.x, v.y, v.z})).height_m;
+  }
+
+ private:
+  const TerrainSlot* Find(int32_t slot) const {
+    return &*std::find_if(list_.slots.begin(), list_.slots.end(), [&](const TerrainSlot& s) { return s.slot == slot; });
+  }
+
+  const DisplayList& list_;
+  const TerrainSlot& own_;
+};
+
+// Shares of the three corners at a place of the grid; nullopt outside of the triangle.
+std::optional<std::array<double, 3>> SharesAt(const std::array<GridVertex, 3>& corners, double east, double north) {
+  const auto area = [](double ax, double ay, double bx, double by) { return ax * by - ay * bx; };
+  const auto& [a, b, c] = corners;
+  const double whole = area(b.east - a.east, b.north - a.north, c.east - a.east, c.north - a.north);
+  if (whole <= 0) return std::nullopt;
+  const double of_b = area(east - a.east, north - a.north, c.east - a.east, c.north - a.north) / whole;
+  const double of_c = area(b.east - a.east, b.north - a.north, east - a.east, north - a.north) / whole;
+  const double of_a = 1.0 - of_b - of_c;
+  if (std::min({of_a, of_b, of_c}) < -kSlack) return std::nullopt;
+  return std::array<double, 3>{of_a, of_b, of_c};
+}
+
+}  // namespace
+
+std::optional<double> DrawnGroundAt(const DisplayList& list, const Geodetic& place) {
+  const Quadcode finest = Quadcode::Containing(place.latitude_deg, place.longitude_deg, kMaxLevel);
+  const auto draw = std::find_if(list.terrain_draws.begin(), list.terrain_draws.end(),
+                                 [&](const TerrainDraw& d) { return d.node.Contains(finest); });
+  if (draw == list.terrain_draws.end()) return std::nullopt;
+  const auto own = std::find_if(list.slots.begin(), list.slots.end(),
+                                [&](const TerrainSlot& slot) { return slot.page->node == draw->node; });
+  if (own == list.slots.end()) return std::nullopt;
+  const Vertices vertices(list, *own);
+  const GeoBox box = draw->node.Box();
+  const double per_degree = draw->node.GridSize() / draw->node.SizeDegrees();
+  const double east = std::clamp(std::remainder(place.longitude_deg - box.west_deg, 360.0) * per_degree, 0.0,
+                                 static_cast<double>(draw->node.GridSize()));
+  const double north = (place.latitude_deg - box.south_deg) * per_degree;
+  const auto indices = std::span(list.indices).subspan(draw->first_index, draw->index_count);
+  for (size_t i = 0; i + 2 < indices.size(); i += 3) {
+    const std::array<GridVertex, 3> corners{vertices.At(indices[i], east), vertices.At(indices[i + 1], east),
+                                            vertices.At(indices[i + 2], east)};
+    const auto shares = SharesAt(corners, east, north);
+    if (!shares) continue;
+    double height_m = 0;
+    for (size_t corner = 0; corner < 3; ++corner) height_m += (*shares)[corner] * vertices.HeightOf(corners[corner]);
+    return height_m;
+  }
+  return std::nullopt;
+}
+
+}  // namespace belvedere

@@ -1,0 +1,135 @@
+#include "managers/post_selection.h"
+
+#include "tests/managers/random_earth.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+namespace belvedere {
+namespace {
+
+using test::FlatPage;
+using test::RandomDeltas;
+
+constexpr double kErrorPx = 0.5;
+
+struct Scene {
+  std::unique_ptr<TerrainPage> page;
+  CutNode node;
+  Sight sight;
+  std::vector<PostTriangle> triangles;
+  float worst = 0;
+
+  explicit Scene(uint32_t seed, double error_px = kErrorPx) {
+    std::mt19937 random(seed);
+    page = FlatPage(Quadcode::Containing(37, -118, 6), RandomDeltas(random));
+    node.node = page->node;
+    node.page = page.get();
+    node.error_scale = 700;
+    sight.eye_ecef = ToEcef({36.9, -118.2, 60'000});
+    sight.forward_ecef = glm::normalize(ToEcef({37.3, -117.6, 0}) - sight.eye_ecef);
+    sight.cos_corner = 0.7;
+    worst = PostSelection().Run(node, sight, FrameOf(page->node), error_px, triangles);
+  }
+
+  // Screen-space error of the post's delta value, were it at the depth of `where`; 0 behind the eye.
+  double ErrorAt(int post, int where) const {
+    const TerrainVertex& v = page->vertices[static_cast<size_t>(where)];
+    const glm::dvec3 away = FrameOf(page->node).ToEcef({v.x, v.y, v.z}) - sight.eye_ecef;
+    const double depth = std::max(glm::dot(away, sight.forward_ecef), sight.cos_corner * glm::length(away));
+    return page->deltas[static_cast<size_t>(post)] * node.error_scale / depth;
+  }
+};
+
+TEST(PostSelection, NoTriangleIsOverTheBoundAnywhere) {
+  const Scene scene(1);
+  ASSERT_GT(scene.triangles.size(), 1000U);
+  ASSERT_LT(scene.triangles.size(), 2U * kCells * kCells);
+  size_t whole = 0;
+  for (const PostTriangle& triangle : scene.triangles) {
+    const int middle = (triangle.b + triangle.c) / 2;
+    if ((triangle.b + triangle.c) % 2 != 0) continue;
+    const Post post{middle % kPosts, middle / kPosts};
+    const bool splits = LevelOf(post) != kNoLevel && std::abs(triangle.b % kPosts - triangle.c % kPosts) % 2 == 0 &&
+                        std::abs(triangle.b / kPosts - triangle.c / kPosts) % 2 == 0;
+    if (!splits) continue;  // as small as triangles get
+    ++whole;
+    for (const int corner : {int{triangle.a}, int{triangle.b}, int{triangle.c}, middle})
+      ASSERT_LE(scene.ErrorAt(middle, corner), kErrorPx * 1.001);
+  }
+  EXPECT_GT(whole, 500U);
+}
+
+// The fewest: a post is drawn because its own triangles ask for it, or because one that depends on it is drawn.
+TEST(PostSelection, DrawsNoPostWithoutAReason) {
+  const Scene scene(2);
+  std::set<int> drawn;
+  for (const PostTriangle& triangle : scene.triangles) drawn.insert({triangle.a, triangle.b, triangle.c});
+  for (const int index : drawn) {
+    const Post post{index % kPosts, index / kPosts};
+    const int level = LevelOf(post);
+    if (level == kNoLevel) continue;
+    bool has_reason = false;
+    if (level + 1 < kBisectionLevels) {
+      for (const Post child : ChildrenOf(post)) has_reason |= child.inside() && drawn.contains(child.index());
+    }
+    if (has_reason) continue;
+    const double delta_m = scene.page->deltas[static_cast<size_t>(index)];
+    const TerrainVertex& v = scene.page->vertices[static_cast<size_t>(index)];
+    const glm::dvec3 away = FrameOf(scene.page->node).ToEcef({v.x, v.y, v.z}) - scene.sight.eye_ecef;
+    const double spread_m = scene.page->spread_m[static_cast<size_t>(level)];
+    const double nearest_m = std::max({0.0, glm::dot(away, scene.sight.forward_ecef) - spread_m,
+                                       (glm::length(away) - spread_m) * scene.sight.cos_corner});
+    ASSERT_GT(delta_m * scene.node.error_scale, nearest_m * kErrorPx * 0.999);
+  }
+}
+
+TEST(PostSelection, EveryPostHasItsParents) {
+  const Scene scene(3);
+  std::set<int> drawn;
+  for (const PostTriangle& triangle : scene.triangles) drawn.insert({triangle.a, triangle.b, triangle.c});
+  for (const int index : drawn) {
+    const Post post{index % kPosts, index / kPosts};
+    if (LevelOf(post) == kNoLevel) continue;
+    const Split split = SplitAt(post);
+    for (const Post parent : {split.apex_a, split.apex_b}) {
+      if (!parent.inside()) continue;
+      ASSERT_TRUE(drawn.contains(parent.index()));
+    }
+  }
+}
+
+TEST(PostSelection, TrianglesCoverTheQuadnodeOnce) {
+  const Scene scene(4);
+  int64_t twice_area = 0;
+  for (const PostTriangle& t : scene.triangles) {
+    const auto x = [](int post) { return int64_t{post % kPosts}; };
+    const auto y = [](int post) { return int64_t{post / kPosts}; };
+    const int64_t twice = (x(t.b) - x(t.a)) * (y(t.c) - y(t.a)) - (x(t.c) - x(t.a)) * (y(t.b) - y(t.a));
+    ASSERT_GT(twice, 0) << "clockwise or without area";
+    twice_area += twice;
+  }
+  EXPECT_EQ(twice_area, 2 * int64_t{kCells} * kCells);
+}
+
+TEST(PostSelection, ReportsTheWorstOfWhatIsLeftOut) {
+  const Scene scene(5);
+  EXPECT_GT(scene.worst, 0.5F);
+  EXPECT_LE(scene.worst, 1.0F);
+}
+
+TEST(PostSelection, FlatGroundIsTwoTriangles) {
+  const auto page = FlatPage(Quadcode::Containing(37, -118, 12), std::vector<float>(kVerticesPerPage, 0.0F));
+  CutNode node;
+  node.node = page->node;
+  node.page = page.get();
+  node.error_scale = 700;
+  std::vector<PostTriangle> triangles;
+  EXPECT_EQ(PostSelection().Run(node, Sight{}, FrameOf(page->node), 1.0, triangles), 0.0F);
+  EXPECT_EQ(triangles.size(), 2U);
+}
+
+}  // namespace
+}  // namespace belvedere
