@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
+#include <span>
 
 namespace belvedere {
 namespace {
@@ -87,18 +89,10 @@ class Selection {
   }
 
   Cut Run() {
-    struct Root {
-      Quadcode node;
-      const TerrainPage* page;
-      int slot;
-      double distance_m;
-    };
-    std::vector<Root> roots;
     for (int tree = 0; tree < kTrees; ++tree) {
       const Quadcode node = Quadcode::Root(tree);
       if (const std::optional<int> slot = Drawable(node)) {
-        const TerrainPage* page = pages_.Terrain(node);
-        roots.push_back({node, page, *slot, glm::distance(page->center_ecef, matrices_.eye_ecef) - page->radius_m});
+        Add(node, *slot);
       } else {
         cut_.waiting |= pages_.Want({terrain_, node}, kRootPriority);
         cut_.behind = true;
@@ -106,85 +100,122 @@ class Selection {
     }
     // An Earth with holes is not shown: until the last root has come, there is none.
     if (cut_.waiting) return std::move(cut_);
-    std::sort(roots.begin(), roots.end(), [](const Root& a, const Root& b) { return a.distance_m < b.distance_m; });
-    for (const Root& root : roots) Visit(root.node, *root.page, root.slot);
+    std::vector<size_t> roots(branches_.size());
+    std::iota(roots.begin(), roots.end(), size_t{0});
+    // The worst first, so that where a limit ends it, what is left is the least.
+    while (!coarse_.empty() && drawn_ + 3 <= limits_.max_nodes) {
+      std::pop_heap(coarse_.begin(), coarse_.end());
+      const size_t branch = coarse_.back().branch;
+      coarse_.pop_back();
+      Refine(branch);
+    }
+    cut_.at_limit = !coarse_.empty();
+    for (const Coarse& left : coarse_) cut_.behind |= branches_[left.branch].measure.share >= 1.0;
+    Emit(roots);
     return std::move(cut_);
   }
 
  private:
+  // A quadnode that is drawn, or whose four children are.
+  struct Branch {
+    Quadcode node;
+    const TerrainPage* page = nullptr;
+    int slot = 0;
+    Measure measure;
+    double geometry_ratio = 0;  // what is left with all posts drawn, over the bound
+    double ratio = 0;           // the greater of that and of texels
+    double distance_m = 0;
+    std::optional<size_t> first_child;  // of four in a row
+  };
+  struct Coarse {  // a branch that should be refined
+    double ratio = 0;
+    size_t branch = 0;
+    bool operator<(const Coarse& other) const { return ratio < other.ratio; }
+  };
+
   std::optional<int> Drawable(Quadcode node) {
     if (pages_.Terrain(node) == nullptr) return std::nullopt;
     return pages_.Slot({terrain_, node});
   }
 
-  void Visit(Quadcode node, const TerrainPage& page, int slot) {
-    const auto begin = static_cast<uint32_t>(cut_.records.size());
-    cut_.records.push_back({ListRecord::Kind::kCullBegin, static_cast<uint32_t>(cut_.volumes.size()), 0, 0});
-    cut_.volumes.push_back({page.center_ecef, page.radius_m});
-
-    const Measure measure = MeasureOf(page);
-    const double geometry_ratio = page.error_m * measure.error_metre_px * measure.share / view_.error_px;
-    const double ratio = std::max(geometry_ratio, TextureRatio(node, measure));
-    if (ratio <= 1.0 || !Refine(node, measure, ratio)) Draw(node, page, slot, measure, geometry_ratio <= 1.0);
-
-    cut_.records.push_back({ListRecord::Kind::kCullEnd, 0, 0, 0});
-    cut_.records[begin].skip = static_cast<uint32_t>(cut_.records.size());
+  // REQUIRES: Drawable(node) == slot
+  void Add(Quadcode node, int slot) {
+    Branch branch;
+    branch.node = node;
+    branch.page = pages_.Terrain(node);
+    branch.slot = slot;
+    branch.measure = MeasureOf(*branch.page);
+    branch.geometry_ratio =
+        branch.page->error_m * branch.measure.error_metre_px * branch.measure.share / view_.error_px;
+    branch.ratio = std::max(branch.geometry_ratio, TextureRatio(node, branch.measure));
+    branch.distance_m = glm::distance(branch.page->center_ecef, matrices_.eye_ecef);
+    if (node.is_root()) branch.distance_m -= branch.page->radius_m;
+    ++drawn_;
+    const bool finer = node.level() < layers_.at(terrain_).max_level && layers_.at(terrain_).exists(node.Child(0));
+    if (branch.ratio > 1.0 && finer) {
+      coarse_.push_back({branch.ratio, branches_.size()});
+      std::push_heap(coarse_.begin(), coarse_.end());
+    }
+    branches_.push_back(branch);
   }
 
-  // Draws the children instead of the quadnode, if they all can be.
-  bool Refine(Quadcode node, const Measure& measure, double ratio) {
-    if (node.level() >= layers_.at(terrain_).max_level || !layers_.at(terrain_).exists(node.Child(0))) return false;
-    const bool visible = measure.share >= 1.0;
-    if (static_cast<int>(cut_.nodes.size()) + 3 > limits_.max_nodes) {
-      cut_.at_limit = true;
-      cut_.behind |= visible;
-      return false;
-    }
-    struct Child {
-      Quadcode node;
-      const TerrainPage* page = nullptr;
-      int slot = 0;
-      double distance_m = 0;
-    };
-    std::array<Child, 4> children;
+  // Takes the children instead of the quadnode, if they all can be drawn.
+  void Refine(size_t index) {
+    const Branch parent = branches_[index];
+    std::array<int, 4> slots{};
     bool all = true;
     for (int which = 0; which < 4; ++which) {
-      Child& child = children[static_cast<size_t>(which)];
-      child.node = node.Child(which);
-      const std::optional<int> slot = Drawable(child.node);
-      if (!slot) {
-        const auto priority = std::min(static_cast<float>(ratio), kGreatestPriority);
-        const bool coming = pages_.Want({terrain_, child.node}, priority);
-        cut_.waiting |= coming;
-        cut_.behind |= visible && coming;
-        all = false;
+      const Quadcode child = parent.node.Child(which);
+      if (const std::optional<int> slot = Drawable(child)) {
+        slots[static_cast<size_t>(which)] = *slot;
         continue;
       }
-      child.page = pages_.Terrain(child.node);
-      child.slot = *slot;
-      child.distance_m = glm::distance(child.page->center_ecef, matrices_.eye_ecef);
+      const bool coming = pages_.Want({terrain_, child}, std::min(static_cast<float>(parent.ratio), kGreatestPriority));
+      cut_.waiting |= coming;
+      cut_.behind |= parent.measure.share >= 1.0 && coming;
+      all = false;
     }
-    if (!all) return false;
-    std::sort(children.begin(), children.end(),
-              [](const Child& a, const Child& b) { return a.distance_m < b.distance_m; });
-    for (const Child& child : children) Visit(child.node, *child.page, child.slot);
-    return true;
+    if (!all) return;
+    branches_[index].first_child = branches_.size();
+    --drawn_;
+    for (int which = 0; which < 4; ++which) Add(parent.node.Child(which), slots[static_cast<size_t>(which)]);
   }
 
-  void Draw(Quadcode node, const TerrainPage& page, int slot, const Measure& measure, bool finest) {
+  // Front to back, nested.
+  void Emit(std::span<size_t> branches) {
+    std::sort(branches.begin(), branches.end(),
+              [&](size_t a, size_t b) { return branches_[a].distance_m < branches_[b].distance_m; });
+    for (const size_t index : branches) {
+      const Branch& branch = branches_[index];
+      const auto begin = static_cast<uint32_t>(cut_.records.size());
+      cut_.records.push_back({ListRecord::Kind::kCullBegin, static_cast<uint32_t>(cut_.volumes.size()), 0, 0});
+      cut_.volumes.push_back({branch.page->center_ecef, branch.page->radius_m});
+      if (const std::optional<size_t> first = branch.first_child) {
+        std::array<size_t, 4> children{*first, *first + 1, *first + 2, *first + 3};
+        Emit(children);
+      } else {
+        Draw(branch);
+      }
+      cut_.records.push_back({ListRecord::Kind::kCullEnd, 0, 0, 0});
+      cut_.records[begin].skip = static_cast<uint32_t>(cut_.records.size());
+    }
+  }
+
+  void Draw(const Branch& branch) {
+    const Measure& measure = branch.measure;
     CutNode drawn;
-    drawn.node = node;
-    drawn.page = &page;
-    drawn.slot = slot;
+    drawn.node = branch.node;
+    drawn.page = branch.page;
+    drawn.slot = branch.slot;
     drawn.error_scale = measure.error_scale * measure.share;
     drawn.nearest_depth_m = measure.nearest_depth_m;
-    drawn.finest = finest;
+    drawn.finest = branch.geometry_ratio <= 1.0;
     drawn.visible = measure.share >= 1.0;
     for (size_t i = 0; i < std::min(view_.image_layers.size(), size_t{kMaxImageLayers}); ++i) {
-      drawn.images[i] = ChooseImage(view_.image_layers[i], node, measure);
+      drawn.images[i] = ChooseImage(view_.image_layers[i], branch.node, measure);
     }
-    if (drawn.visible && !finest) {
-      cut_.left_over_error_px = std::max(cut_.left_over_error_px, page.error_m * measure.error_metre_px);
+    if (drawn.visible && !drawn.finest) {
+      cut_.left_over_error_px = std::max(cut_.left_over_error_px, branch.page->error_m * measure.error_metre_px);
     }
     cut_.records.push_back({ListRecord::Kind::kDrawTerrain, static_cast<uint32_t>(cut_.nodes.size()), 1, 0});
     cut_.nodes.push_back(drawn);
@@ -308,7 +339,10 @@ class Selection {
   PageAccess& pages_;
   const Sight sight_;
   const double eye_height_m_;
-  glm::dvec2 half_picture_{};  // of the picture's half sides on the plane at depth 1
+  glm::dvec2 half_picture_{};     // of the picture's half sides on the plane at depth 1
+  std::vector<Branch> branches_;  // the roots first
+  std::vector<Coarse> coarse_;    // a heap, the worst on top
+  int drawn_ = 0;                 // branches without children
   Cut cut_;
 };
 

@@ -21,7 +21,7 @@ struct Picture {
   uint64_t object_list = 0;
   uint32_t triangles = 0, nodes = 0;
   double achieved_error_px = 0;
-  bool settled = false;  // the terrain list that was drawn was
+  bool settled = false;  // the terrain list that was drawn was, and was made for these parameters
 };
 
 }  // namespace belvedere

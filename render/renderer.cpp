@@ -296,7 +296,7 @@ Picture Renderer::ReadBack(const View& view, const ViewParameters& parameters, c
   picture.triangles = drawn.triangles;
   picture.nodes = drawn.nodes;
   picture.achieved_error_px = terrain.statistics.achieved_error_px;
-  picture.settled = view.has_terrain && terrain.statistics.settled;
+  picture.settled = view.has_terrain && terrain.statistics.settled && terrain.view_number == parameters.number;
   return picture;
 }
 

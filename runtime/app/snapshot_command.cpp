@@ -30,6 +30,7 @@ ViewParameters ParametersOf(const SnapshotOptions& options, std::vector<DataType
   view.vertical_fov = Radians::FromDegrees(options.vfov_deg);
   view.width_px = options.size.width_px;
   view.height_px = options.size.height_px;
+  view.exaggeration = options.exaggeration;
   view.error_px = options.error_px;
   view.texel_px = options.texel_px;
   view.image_layers = std::move(layers);

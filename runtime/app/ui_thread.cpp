@@ -73,9 +73,15 @@ Status UiThread::OpenView(const WindowSpec& window) {
   view.pilot->Resize(view.width_px, view.height_px);
   view.gestures = std::make_unique<Gestures>(keys_);
   const double now_s = clock_.NowSeconds();
-  view.channel = &station_.AddView(view.pilot->Parameters(++number_, now_s, UtcAt(now_s)), presenter);
+  view.channel = &station_.AddView(ParametersOf(view, now_s), presenter);
   views_.push_back(std::move(view));
   return {};
+}
+
+ViewParameters UiThread::ParametersOf(const View& view, double now_s) {
+  ViewParameters parameters = view.pilot->Parameters(++number_, now_s, UtcAt(now_s));
+  parameters.exaggeration = spec_.exaggeration;
+  return parameters;
 }
 
 void UiThread::CloseViews() {
@@ -155,7 +161,7 @@ void UiThread::Advance(double now_s) {
     }
     view.pilot->Advance(seconds, target, station_.ground());
     if (view.pilot->TakeChanged()) {
-      view.channel->parameters.Publish(view.pilot->Parameters(++number_, now_s, UtcAt(now_s)));
+      view.channel->parameters.Publish(ParametersOf(view, now_s));
     }
   }
 }

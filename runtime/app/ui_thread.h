@@ -54,6 +54,7 @@ class UiThread {
   void Advance(double now_s);
   void ShowNotices(double now_s);
   Status TakePictures(const std::string& moment);
+  ViewParameters ParametersOf(const View& view, double now_s);
   double UtcAt(double now_s) const { return utc_at_start_s_ + now_s - start_s_; }
 
   const StationSpec& spec_;

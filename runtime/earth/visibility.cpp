@@ -10,8 +10,11 @@
 namespace belvedere {
 namespace {
 
-const glm::dvec3 kScale{1.0 / (kEquatorialRadius_m + kDeepestGround_m), 1.0 / (kEquatorialRadius_m + kDeepestGround_m),
-                        1.0 / (kPolarRadius_m + kDeepestGround_m)};
+glm::dvec3 ShrunkenScale(double exaggeration) {
+  const double lowest_m = kDeepestGround_m * exaggeration;
+  const double equator = 1.0 / (kEquatorialRadius_m + lowest_m);
+  return {equator, equator, 1.0 / (kPolarRadius_m + lowest_m)};
+}
 
 glm::dvec4 Normalised(const glm::dvec4& plane) {
   return plane / glm::length(glm::dvec3(plane));
@@ -41,14 +44,16 @@ bool Frustum::Encloses(const BoundingSphere& sphere) const {
                      [&](const glm::dvec4& plane) { return Distance(plane, sphere.center_ecef) >= sphere.radius_m; });
 }
 
-Horizon::Horizon(const glm::dvec3& eye_ecef)
-    : eye_scaled_(eye_ecef * kScale), horizon_squared_(glm::dot(eye_scaled_, eye_scaled_) - 1.0) {}
+Horizon::Horizon(const glm::dvec3& eye_ecef, double exaggeration)
+    : scale_(ShrunkenScale(exaggeration)),
+      eye_scaled_(eye_ecef * scale_),
+      horizon_squared_(glm::dot(eye_scaled_, eye_scaled_) - 1.0) {}
 
 bool Horizon::Hides(const BoundingSphere& sphere) const {
   if (horizon_squared_ <= 0) return false;
   // In scaled space the sphere becomes an ellipsoid that lies inside a ball of this radius.
-  const double radius = sphere.radius_m * kScale.z;
-  const glm::dvec3 to_center = sphere.center_ecef * kScale - eye_scaled_;
+  const double radius = sphere.radius_m * scale_.z;
+  const glm::dvec3 to_center = sphere.center_ecef * scale_ - eye_scaled_;
   const double distance = glm::length(to_center);
   if (distance <= radius) return false;
   const double eye_distance = std::sqrt(horizon_squared_ + 1.0);

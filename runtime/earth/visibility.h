@@ -40,10 +40,12 @@ inline constexpr double kDeepestGround_m = -11'500.0;
 class Horizon {
  public:
   Horizon() = default;  // hides nothing
-  explicit Horizon(const glm::dvec3& eye_ecef);
+  // exaggeration: of heights; it deepens the sea as it raises the mountains.
+  explicit Horizon(const glm::dvec3& eye_ecef, double exaggeration = 1.0);
   bool Hides(const BoundingSphere& sphere) const;
 
  private:
+  glm::dvec3 scale_{1.0};        // the shrunken ellipsoid from ECEF
   glm::dvec3 eye_scaled_{};      // in units of the shrunken ellipsoid
   double horizon_squared_ = -1;  // |eye|^2 - 1; negative when the eye is inside: nothing is hidden
 };

@@ -17,9 +17,10 @@ constexpr double kHighestGround_m = 9'000.0;
 constexpr double kNearShareOfHeight = 5e-4;
 constexpr double kNearest_m = 0.1;
 
-double FarPlane(double ellipsoid_height_m) {
-  return (HorizonDistance(std::max(ellipsoid_height_m, 10.0) - kDeepestGround_m) +
-          HorizonDistance(kHighestGround_m - kDeepestGround_m)) *
+double FarPlane(double ellipsoid_height_m, double exaggeration) {
+  const double lowest_m = kDeepestGround_m * exaggeration;
+  const double highest_m = kHighestGround_m * exaggeration;
+  return (HorizonDistance(std::max(ellipsoid_height_m, 10.0) - lowest_m) + HorizonDistance(highest_m - lowest_m)) *
          1.05;
 }
 
@@ -52,7 +53,7 @@ ViewMatrices MatricesOf(const ViewParameters& view, double clock_time_s, double 
   const double ellipsoid_height_m = ToGeodetic(matrices.eye_ecef).height_m;
   matrices.near_m = std::max(
       kNearest_m, kNearShareOfHeight * std::min(height_above_ground_m, std::max(ellipsoid_height_m, kNearest_m)));
-  matrices.far_m = std::max(FarPlane(ellipsoid_height_m), 10.0 * matrices.near_m);
+  matrices.far_m = std::max(FarPlane(ellipsoid_height_m, view.exaggeration), 10.0 * matrices.near_m);
   const double aspect = static_cast<double>(view.width_px) / static_cast<double>(view.height_px);
   if (view.projection == Projection::kPerspective) {
     const double tan_half = std::tan(0.5 * view.vertical_fov.value);
@@ -67,7 +68,7 @@ ViewMatrices MatricesOf(const ViewParameters& view, double clock_time_s, double 
   matrices.camera_from_ecef[3] = glm::dvec4(-(camera_from_ecef * matrices.eye_ecef), 1.0);
   matrices.clip_from_ecef = matrices.clip_from_camera * matrices.camera_from_ecef;
   matrices.frustum = Frustum(matrices.clip_from_ecef);
-  matrices.horizon = Horizon(matrices.eye_ecef);
+  matrices.horizon = Horizon(matrices.eye_ecef, view.exaggeration);
   return matrices;
 }
 

@@ -38,6 +38,7 @@ struct ViewParameters {
   double ortho_height_m = 1e6;               // orthographic: ground that the height of the picture spans
   int width_px = 1024, height_px = 768;
 
+  double exaggeration = 1.0;           // of heights, as the station's pages have it: how far one sees
   double error_px = 2.0;               // bound on the screen-space error
   double texel_px = 1.25;              // bound on the size of a texel on the screen
   std::vector<DataType> image_layers;  // drawn over each other in this order: first a colour layer, then overlays

@@ -8,6 +8,7 @@
 #include "runtime/app/ground.h"
 #include "runtime/app/station.h"
 #include "runtime/earth/ellipsoid.h"
+#include "tests/figures/poses.h"
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -15,7 +16,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <random>
 #include <thread>
 
 namespace belvedere {
@@ -32,29 +32,10 @@ struct Hunt {
   ViewChannel& channel;
   const Clock& clock;
   ViewParameters view;
-  std::mt19937 random{1998};
-  GeoBox inset;  // of the finest source
+  figures::Poses chance;
   int64_t holes = 0;
   int pictures = 0, settled = 0;
-
-  double Uniform(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
 };
-
-Geodetic PlaceOf(Hunt& hunt, int pose) {
-  const GeoBox& inset = hunt.inset;
-  switch (pose % 5) {
-    case 0: return {hunt.Uniform(-88, 88), hunt.Uniform(-180, 180)};
-    case 1: return {hunt.Uniform(inset.south_deg, inset.north_deg), hunt.Uniform(inset.west_deg, inset.east_deg)};
-    case 2: {  // on the inset's border
-      const bool meridian = hunt.Uniform(0, 1) < 0.5;
-      const bool low = hunt.Uniform(0, 1) < 0.5;
-      if (meridian) return {hunt.Uniform(inset.south_deg, inset.north_deg), low ? inset.west_deg : inset.east_deg};
-      return {low ? inset.south_deg : inset.north_deg, hunt.Uniform(inset.west_deg, inset.east_deg)};
-    }
-    case 3: return {std::copysign(hunt.Uniform(89, 90), hunt.Uniform(-1, 1)), hunt.Uniform(-180, 180)};
-    default: return {hunt.Uniform(-80, 80), std::copysign(180 - hunt.Uniform(0, 0.05), hunt.Uniform(-1, 1))};
-  }
-}
 
 int64_t CountHoles(const Picture& picture) {
   int64_t holes = 0;
@@ -102,13 +83,11 @@ double FinestGround(const Dataset& dataset, const Geodetic& place) {
 }
 
 void Visit(Hunt& hunt, int pose) {
-  const Geodetic place = PlaceOf(hunt, pose);
+  const Geodetic place = hunt.chance.PlaceOf(pose);
   const double ground_m = std::max(0.0, FinestGround(hunt.dataset, place));
-  const double height_m = ground_m + 100.0 + std::pow(10.0, hunt.Uniform(2.0, 6.8));
+  const double height_m = ground_m + 100.0 + std::pow(10.0, hunt.chance.Uniform(2.0, 6.8));
   hunt.view.eye_ecef = ToEcef({place.latitude_deg, place.longitude_deg, height_m});
-  hunt.view.ecef_from_camera =
-      CameraAxes(place.latitude_deg, place.longitude_deg, Radians::FromDegrees(hunt.Uniform(0, 360)),
-                 Radians::FromDegrees(hunt.Uniform(-90, 0)), Radians::FromDegrees(hunt.Uniform(-20, 20)));
+  hunt.view.ecef_from_camera = hunt.chance.AxesAt(place, -90, 0);
   hunt.view.time_s = hunt.clock.NowSeconds();
   ++hunt.view.number;
   hunt.channel.parameters.Publish(hunt.view);
@@ -155,15 +134,7 @@ int Run(const std::string& dataset, int poses, int width_px, int height_px) {
   view.background = {1.0F, 0.0F, 1.0F};
   view.utc_s = 43'200;  // no place is dark enough for its colour to matter
   ViewChannel& channel = (*station)->AddView(view, nullptr);
-  Hunt hunt{**station, **opened, channel, clock, view, std::mt19937{1998}, {}};
-  int finest = -1;
-  for (const LayerRecord& layer : (*opened)->layers()) {
-    for (const SourceRecord& source : layer.sources) {
-      if (layer.kind != LayerKind::kElevation || source.finest_level <= finest) continue;
-      finest = source.finest_level;
-      hunt.inset = source.extent;
-    }
-  }
+  Hunt hunt{**station, **opened, channel, clock, view, figures::Poses(**opened, 1998)};
   for (int pose = 0; pose < poses; ++pose) Visit(hunt, pose);
   fmt::print("{} poses, {} pictures of {} x {} ({} settled): {} magenta pixels under the horizon\n", poses,
              hunt.pictures, width_px, height_px, hunt.settled, hunt.holes);

@@ -203,6 +203,28 @@ TEST_F(CutTest, StopsAtTheLimit) {
   ExpectCover(cut);
 }
 
+// A limit must not leave coarse what happens to come last.
+TEST_F(CutTest, WhatALimitLeavesOverIsTheLeast) {
+  view_.error_px = 0.5;
+  const Cut limited = Select({150});
+  ASSERT_TRUE(limited.at_limit);
+  EXPECT_TRUE(limited.behind);
+  double worst_drawn_px = 0;
+  for (const CutNode& node : limited.nodes) {
+    if (!node.visible || node.node.level() == 12) continue;
+    worst_drawn_px = std::max(worst_drawn_px, node.page->error_m * node.error_scale / node.nearest_depth_m);
+  }
+  // Whoever was replaced was worse than all that is left; its children have a half of its error each.
+  double least_replaced_px = 1e9;
+  for (const CutNode& node : limited.nodes) {
+    if (!node.visible || node.node.is_root()) continue;
+    const double parent_px = 2.0 * node.page->error_m * node.error_scale / node.nearest_depth_m;
+    least_replaced_px = std::min(least_replaced_px, parent_px);
+  }
+  EXPECT_LT(worst_drawn_px, 8.0 * least_replaced_px);
+  EXPECT_LT(limited.left_over_error_px, 20.0 * view_.error_px);
+}
+
 TEST_F(CutTest, RecordsNest) {
   const Cut cut = Select();
   int depth = 0;

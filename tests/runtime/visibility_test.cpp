@@ -63,9 +63,10 @@ TEST(Horizon, HidesTheOtherSideOfTheEarth) {
 }
 
 // Whatever has a free line of sight past the deepest ground is not hidden.
-TEST(Horizon, NeverHidesWhatCanBeSeen) {
-  const glm::dvec3 scale(1 / (kEquatorialRadius_m + kDeepestGround_m), 1 / (kEquatorialRadius_m + kDeepestGround_m),
-                         1 / (kPolarRadius_m + kDeepestGround_m));
+void ExpectWhatCanBeSeenIsNotHidden(double exaggeration) {
+  const double lowest_m = kDeepestGround_m * exaggeration;
+  const glm::dvec3 scale(1 / (kEquatorialRadius_m + lowest_m), 1 / (kEquatorialRadius_m + lowest_m),
+                         1 / (kPolarRadius_m + lowest_m));
   std::mt19937 random(8);
   std::uniform_real_distribution<double> latitude(-90, 90), longitude(-180, 180), power(0, 7), spread(-15, 15);
   int seen = 0;
@@ -82,10 +83,23 @@ TEST(Horizon, NeverHidesWhatCanBeSeen) {
     const glm::dvec3 nearest = from + share * along;
     if (glm::dot(nearest, nearest) < 1) continue;
     ++seen;
-    ASSERT_FALSE(Horizon(eye).Hides({point, 0.01}));
-    ASSERT_FALSE(Horizon(eye).Hides({point, 5000}));
+    ASSERT_FALSE(Horizon(eye, exaggeration).Hides({point, 0.01}));
+    ASSERT_FALSE(Horizon(eye, exaggeration).Hides({point, 5000}));
   }
   EXPECT_GT(seen, 1000);
+}
+
+TEST(Horizon, NeverHidesWhatCanBeSeen) {
+  ExpectWhatCanBeSeenIsNotHidden(1);
+}
+
+// Over a sea ten times as deep one sees further.
+TEST(Horizon, NeverHidesWhatCanBeSeenOverExaggeratedGround) {
+  ExpectWhatCanBeSeenIsNotHidden(10);
+  const glm::dvec3 eye = ToEcef({0, 0, 1000});
+  const BoundingSphere beyond{ToEcef({0, 8, 0}), 1000};
+  EXPECT_TRUE(Horizon(eye).Hides(beyond));
+  EXPECT_FALSE(Horizon(eye, 10).Hides(beyond));
 }
 
 }  // namespace
