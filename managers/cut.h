@@ -5,8 +5,8 @@
 //   geometry: what is left with every post of its page drawn, error_m, is more than error_px pixels;
 //   texture:  a texel of its own image would span more than texel_px pixels, and the layer has finer pages there;
 // and all four children can be drawn: their terrain pages are on the GPU. Until then the quadnode itself is drawn and
-// the children are asked for. So a cut always covers the whole Earth, exactly once. The worst quadnode is replaced first:
-// where CutLimits end it, what is left over is the least that can be.
+// the children are asked for. So a cut always covers the whole Earth, exactly once. The worst quadnode is replaced
+// first: where CutLimits end it, what is left over is the least that can be.
 //
 // Screen-space error. A point displaced by e along the local vertical u moves on the picture by exactly
 //     e * pixels_per_radian * g / z,   g = |(u_x, u_y) - (x, y) u_z / z|

@@ -56,14 +56,15 @@ float PostSelection::Run(const CutNode& node, const Sight& sight, const Frame& f
   for (const int corner : {kSouthWest, kSouthEast, kNorthWest, kNorthEast})
     states_[static_cast<size_t>(corner)] = kDrawn;
   worst_ = 0;
+  drawn_.clear();
   Test(Post{kCells / 2, kCells / 2}, 0, view);
-  while (!newly_drawn_.empty()) {
-    const int index = newly_drawn_.back();
-    newly_drawn_.pop_back();
+  // In the order in which they were found: what Draw has asked of memory for a post has come when its turn does.
+  for (size_t next = 0; next < drawn_.size(); ++next) {
+    const int index = drawn_[next];
     const Post post{index % kPosts, index / kPosts};
     const Split split = SplitAt(post);
     for (const Post parent : {split.apex_a, split.apex_b}) {
-      if (parent.inside()) Draw(parent);
+      if (parent.inside()) Draw(parent, view);
     }
     const int level = LevelOf(post);
     if (level + 1 == kBisectionLevels) continue;
@@ -76,11 +77,17 @@ float PostSelection::Run(const CutNode& node, const Sight& sight, const Frame& f
   return worst_;
 }
 
-void PostSelection::Draw(Post post) {
+void PostSelection::Draw(Post post, const LocalView& view) {
   State& state = states_[static_cast<size_t>(post.index())];
   if (state == kDrawn) return;
   state = kDrawn;
-  newly_drawn_.push_back(static_cast<uint16_t>(post.index()));
+  drawn_.push_back(static_cast<uint16_t>(post.index()));
+  if (LevelOf(post) + 1 == kBisectionLevels) return;
+  for (const Post child : ChildrenOf(post)) {
+    if (!child.inside()) continue;
+    __builtin_prefetch(&view.page.deltas[static_cast<size_t>(child.index())]);
+    __builtin_prefetch(&view.page.vertices[static_cast<size_t>(child.index())]);
+  }
 }
 
 void PostSelection::Test(Post post, int level, const LocalView& view) {
@@ -88,13 +95,13 @@ void PostSelection::Test(Post post, int level, const LocalView& view) {
   if (states_[index] != kUnseen) return;
   const float delta_m = view.page.deltas[index];
   // Whoever jumps to the other side of the world finds it round, also in the list that was made before the jump.
-  if (delta_m > kAlwaysDrawn_m) return Draw(post);
+  if (delta_m > kAlwaysDrawn_m) return Draw(post, view);
   // A quadnode that must serve although its own posts are too coarse draws what its relief asks and no more.
   const float error = std::max(0.0F, delta_m - view.left_over_m) * view.scale;
   // Most posts are done with before their place is looked up in memory.
   float least_depth_m = view.perspective ? view.nearest_depth_m : 1.0F;
   if (error > least_depth_m && view.perspective) least_depth_m = view.LeastDepth(post.index(), level);
-  if (error > std::max(least_depth_m, kLeastDepth_m)) return Draw(post);
+  if (error > std::max(least_depth_m, kLeastDepth_m)) return Draw(post, view);
   states_[index] = kLeftOut;
   worst_ = std::max(worst_, error / std::max(least_depth_m, kLeastDepth_m));
 }

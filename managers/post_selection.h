@@ -35,12 +35,12 @@ class PostSelection {
   struct LocalView;
   enum State : uint8_t { kUnseen, kLeftOut, kDrawn };
 
-  void Draw(Post post);
+  void Draw(Post post, const LocalView& view);
   void Test(Post post, int level, const LocalView& view);
   void Emit(int a, int b, int c, int level, std::vector<PostTriangle>& out) const;
 
   std::array<State, kVerticesPerPage> states_{};
-  std::vector<uint16_t> newly_drawn_;
+  std::vector<uint16_t> drawn_;  // posts but for the corners
   float worst_ = 0;
 };
 

@@ -265,37 +265,35 @@ uint32_t FrameIndex(Quadcode node, std::vector<Frame>& frames) {
 
 }  // namespace
 
-MeshStatistics BuildSurface(std::span<const CutNode> nodes, const Sight& sight, double error_px, DisplayList& list) {
+MeshStatistics BuildSurface(std::span<const CutNode> nodes, const Sight& sight, double error_px, KeptTriangles& kept,
+                            DisplayList& list) {
   MeshStatistics statistics;
-  PostSelection posts;
-  std::vector<PostTriangle> triangles;
-  std::vector<size_t> ends;
+  std::vector<std::span<const PostTriangle>> triangles;
+  triangles.reserve(nodes.size());
   const std::vector<uint32_t> rank = RankNodes(nodes);
   BorderLines lines;
   for (size_t i = 0; i < nodes.size(); ++i) {
     const CutNode& node = nodes[i];
     const uint32_t frame = FrameIndex(node.node, list.frames);
     list.slots.push_back({node.page, node.slot, frame, node.node.SouthWest(), node.node.PostSpacing()});
-    const size_t begin = triangles.size();
-    const double worst = posts.Run(node, sight, list.frames[frame], error_px, triangles);
-    if (node.visible) statistics.achieved_error_px = std::max(statistics.achieved_error_px, worst * error_px);
-    AddBorderPosts(node, std::span(triangles).subspan(begin), rank[i], lines);
-    ends.push_back(triangles.size());
+    const KeptTriangles::Choice choice = kept.For(node, sight, list.frames[frame], error_px);
+    if (node.visible) statistics.achieved_error_px = std::max(statistics.achieved_error_px, choice.worst * error_px);
+    AddBorderPosts(node, choice.triangles, rank[i], lines);
+    triangles.push_back(choice.triangles);
   }
   lines.Seal();
 
   const uint32_t north_pole = PoleVertex(nodes, rank, true);
   const uint32_t south_pole = PoleVertex(nodes, rank, false);
-  size_t begin = 0;
   for (size_t i = 0; i < nodes.size(); ++i) {
     const auto first_index = static_cast<uint32_t>(list.indices.size());
     Joiner joiner(nodes[i], lines, north_pole, south_pole, list.indices);
-    for (size_t t = begin; t < ends[i]; ++t) joiner.Append(triangles[t]);
-    begin = ends[i];
+    for (const PostTriangle& triangle : triangles[i]) joiner.Append(triangle);
     const auto count = static_cast<uint32_t>(list.indices.size()) - first_index;
     list.terrain_draws.push_back({nodes[i].node, first_index, count, nodes[i].images});
     statistics.triangles += count / 3;
   }
+  kept.ForgetUnused();
   return statistics;
 }
 

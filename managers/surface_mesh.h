@@ -1,5 +1,6 @@
 // Surface mesh: the second stage of terrain selection. Chooses posts within each quadnode of a cut by their delta
-// values (post_selection.h) and joins all quadnodes into one watertight surface.
+// values (post_selection.h), or keeps what it chose before (kept_triangles.h), and joins all quadnodes into one
+// watertight surface.
 //
 // Between quadnodes, each side chooses for itself; then the line that they share is made the same for both. All posts
 // that lie on a border line and are drawn by any quadnode are gathered; each position gets one canonical vertex (that
@@ -11,6 +12,7 @@
 #pragma once
 
 #include "managers/cut.h"
+#include "managers/kept_triangles.h"
 #include "runtime/scene/display_list.h"
 
 #include <glm/vec3.hpp>
@@ -25,6 +27,8 @@ struct MeshStatistics {
 };
 
 // Appends to list.indices, list.slots, list.frames and list.terrain_draws (one draw a cut node, in the same order).
-MeshStatistics BuildSurface(std::span<const CutNode> nodes, const Sight& sight, double error_px, DisplayList& list);
+// kept: of the manager whose lists these are.
+MeshStatistics BuildSurface(std::span<const CutNode> nodes, const Sight& sight, double error_px, KeptTriangles& kept,
+                            DisplayList& list);
 
 }  // namespace belvedere

@@ -15,7 +15,7 @@
 namespace belvedere {
 namespace {
 
-constexpr double kListsPerSecond = 20.0;
+constexpr double kListsPerSecond = 34.0;
 constexpr double kPinnedShareOfBudget = 0.8;  // of the cache; over it, cuts stop growing
 constexpr double kRateSmoothing = 0.1;
 
@@ -77,7 +77,7 @@ class TerrainManager::Worker {
       limits.max_nodes = std::min(limits.max_nodes, last_nodes_);
     }
     const Cut cut = SelectCut(view, matrices, paging_.layers, terrain_, limits, pages);
-    const MeshStatistics mesh = BuildSurface(cut.nodes, SightOf(view, matrices.eye_ecef), view.error_px, list);
+    const MeshStatistics mesh = BuildSurface(cut.nodes, SightOf(view, matrices.eye_ecef), view.error_px, kept_, list);
     last_nodes_ = static_cast<int>(cut.nodes.size());
     list.records = cut.records;
     list.volumes = cut.volumes;
@@ -104,6 +104,7 @@ class TerrainManager::Worker {
   uint64_t number_ = 0;
   uint64_t settled_number_ = 0;
   int last_nodes_ = 0;
+  KeptTriangles kept_;
   double last_list_s_ = 0;
   std::atomic<double> scene_hz_{0};
   PacedThread thread_;  // last: it stops before the members above go

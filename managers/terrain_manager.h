@@ -1,7 +1,7 @@
 // TerrainManager: chooses, for one view, the quadnodes and vertices that keep the error on the screen under its bound,
 // asks for the pages that it lacks, and publishes the surface as display lists.
 //
-// It owns a thread that wakes when the view changed or pages arrived, at most 20 times a second, runs the
+// It owns a thread that wakes when the view changed or pages arrived, at most 34 times a second, runs the
 // pure code of cut.h and surface_mesh.h, and publishes through the view's triple buffer. It never waits for a server or
 // for the render thread.
 //

@@ -140,9 +140,6 @@ void TerrainPass::Draw(const DisplayList& list, std::span<const uint32_t> draws,
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, frames_.get());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, draws_.get());
   pages_.BindImages();
-  // Both faces: an eye that finer ground has left underneath for a moment, while pages are coming, sees the ground from
-  // below and not through it.
-  glDisable(GL_CULL_FACE);
   for (const Layers& layers : layers_met_) {
     glUseProgram(programs_.For(layers));
     for (const uint32_t number : draws) {
@@ -153,7 +150,6 @@ void TerrainPass::Draw(const DisplayList& list, std::span<const uint32_t> draws,
                                           1, number);
     }
   }
-  glEnable(GL_CULL_FACE);
 }
 
 }  // namespace belvedere

@@ -38,7 +38,8 @@ Surface MakeSurface(std::mt19937& random, const std::vector<Quadcode>& nodes, co
   sight.eye_ecef = eye_ecef;
   sight.forward_ecef = -glm::normalize(eye_ecef);
   sight.cos_corner = 0.7;
-  surface.statistics = BuildSurface(surface.cut, sight, error_px, surface.list);
+  KeptTriangles kept;
+  surface.statistics = BuildSurface(surface.cut, sight, error_px, kept, surface.list);
   return surface;
 }
 
@@ -154,7 +155,8 @@ TEST(SurfaceMesh, TheFarSideIsRoundThoughNobodyLooksAtIt) {
   hidden.error_scale = 0;  // behind the horizon
   DisplayList list;
   const std::vector<CutNode> cut{hidden};
-  EXPECT_EQ(BuildSurface(cut, Sight{}, 2.0, list).triangles,
+  KeptTriangles kept;
+  EXPECT_EQ(BuildSurface(cut, Sight{}, 2.0, kept, list).triangles,
             2U * kCells * kCells - kCells);  // less one a column at the pole
 }
 
