@@ -47,6 +47,10 @@ class ObjectManager::Worker {
   void Step() {
     const std::shared_ptr<const ViewParameters> view = channel_->parameters.Get();
     if (view->number == 0) return;
+    // Without objects the list that says so is enough.
+    const bool none = objects_.Snapshot()->objects.empty() || !view->draw_objects;
+    if (none && published_none_) return;
+    published_none_ = none;
     const TraceSpan span("objects.list");
     const double now_s = clock_.NowSeconds();
     DisplayList& list = channel_->object_lists.back();
@@ -181,6 +185,7 @@ class ObjectManager::Worker {
   const Clock& clock_;
   const Layer* const terrain_;
   const Layer* const models_;
+  bool published_none_ = false;
   uint64_t number_ = 0;
   std::unordered_map<EntityId, Smoother> smoothers_;  // of the objects that the last list showed
   PacedThread thread_;                                // last: it stops before the members above go

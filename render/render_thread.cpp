@@ -13,6 +13,8 @@
 namespace belvedere {
 namespace {
 
+constexpr double kLooksPerSecond = 120;  // for news, while there is none
+
 // Carried out by the render thread between two frames; null when it stopped before.
 using Order = std::function<void(Renderer*)>;
 
@@ -94,15 +96,15 @@ class RenderThread::Loop {
       }
       for (const Order& order : orders) order(stopping ? nullptr : &renderer);
       if (stopping) return;
-      renderer.DrawFrame(recorder_, *context_);
-      next_s = Pace(next_s);
+      const bool drawn = renderer.DrawFrame(recorder_, *context_);
+      next_s = Pace(next_s, drawn ? options_.max_fps : kLooksPerSecond);
     }
   }
 
   // Waits until the next frame is due; returns when the one after it will be.
-  double Pace(double due_s) {
-    if (options_.max_fps <= 0) return due_s;
-    const double interval_s = 1.0 / options_.max_fps;
+  double Pace(double due_s, double most_per_second) {
+    if (most_per_second <= 0) return due_s;
+    const double interval_s = 1.0 / most_per_second;
     const double now_s = clock_.NowSeconds();
     // A frame that came too late is not made up for.
     const double next_s = std::max(due_s + interval_s, now_s);

@@ -19,6 +19,7 @@ namespace belvedere {
 namespace {
 
 constexpr double kHudRefresh_s = 0.25;
+constexpr double kLongestUnchanged_s = 1.0;  // the sun goes on, and a window may have been uncovered
 
 constexpr double kLeastOverGround_m = 1.0;
 
@@ -58,7 +59,9 @@ struct Renderer::View {
   OverlayBatch overlay, hud;
   bool has_terrain = false, has_objects = false;
   std::shared_ptr<const ViewParameters> parameters;  // of the last frame
-  double drawn_s = 0;                                // clock time that it showed
+  double drawn_s = -1e9;                             // clock time that it showed
+  bool has_news = false;                             // since then
+  uint64_t notices_number = 0;
   ViewMatrices matrices;
   VisibleDraws visible, visible_objects;
   uint32_t uploads_pending = 0;
@@ -109,19 +112,38 @@ Renderer::View* Renderer::Find(ViewId id) {
 }
 
 void Renderer::SetNotices(std::vector<std::string> notices) {
+  if (notices == notices_) return;
   notices_ = std::move(notices);
+  ++notices_number_;
 }
 
-void Renderer::FetchLists(View& view) {
+bool Renderer::FetchNews(View& view) {
+  bool news = false;
+  if (auto newest = view.channel->parameters.Get(); newest != view.parameters) {
+    view.parameters = std::move(newest);
+    news = true;
+  }
   if (view.channel->terrain_lists.Fetch()) {
+    news = true;
     view.has_terrain = true;
     pages_.Touch(view.channel->terrain_lists.front(), frame_);
     view.terrain.SetList(view.channel->terrain_lists.front());
   }
   if (view.channel->object_lists.Fetch()) {
+    news = true;
     view.has_objects = true;
     pages_.Touch(view.channel->object_lists.front(), frame_);
   }
+  return news;
+}
+
+bool Renderer::HasToBeDrawn(const View& view) const {
+  if (view.parameters->width_px <= 0 || view.parameters->height_px <= 0) return false;  // a minimised window
+  const bool moves = view.parameters->eye_velocity_mps != glm::dvec3(0) ||
+                     !view.channel->object_lists.front().instances.empty() ||
+                     view.uploads_pending != view.report.uploads_pending;
+  return view.has_news || moves || view.notices_number != notices_number_ ||
+         start_s_ - view.drawn_s >= kLongestUnchanged_s;
 }
 
 void Renderer::UploadPages() {
@@ -149,21 +171,27 @@ void Renderer::UploadPages() {
   upload_ms_ = (clock_.NowSeconds() - start_s) * 1000;
 }
 
-void Renderer::DrawFrame(FrameRecorder& recorder, Context& context) {
+bool Renderer::DrawFrame(FrameRecorder& recorder, Context& context) {
   const TraceSpan span("render.frame");
   ++frame_;
   start_s_ = clock_.NowSeconds();
+  for (const auto& view : views_) view->has_news |= FetchNews(*view);
+  UploadPages();
+  const bool any = std::any_of(views_.begin(), views_.end(), [&](const auto& view) { return HasToBeDrawn(*view); });
+  if (!any) {
+    last_start_s_.reset();  // the next frame is not late
+    return false;
+  }
   const double frame_ms = last_start_s_ ? (start_s_ - *last_start_s_) * 1000 : 0;
   last_start_s_ = start_s_;
-  for (const auto& view : views_) FetchLists(*view);
-  UploadPages();
   for (const auto& view : views_) {
+    if (!HasToBeDrawn(*view)) continue;
     const double view_start_s = clock_.NowSeconds();
-    view->parameters = view->channel->parameters.Get();
-    if (view->parameters->width_px <= 0 || view->parameters->height_px <= 0) continue;  // a minimised window
     view->drawn_s = start_s_;
+    view->has_news = false;
+    view->notices_number = notices_number_;
     const Drawn drawn = DrawView(*view, *view->parameters, start_s_);
-    if (view->presenter == nullptr && view == views_.back()) in_flight_.EndFrame();
+    if (view->presenter == nullptr) in_flight_.EndFrame();
     const double draw_ms = (clock_.NowSeconds() - view_start_s) * 1000;
     if (view->presenter != nullptr) {
       glFinish();  // the window's context reads it
@@ -172,6 +200,7 @@ void Renderer::DrawFrame(FrameRecorder& recorder, Context& context) {
     }
     Report(*view, frame_ms, draw_ms, drawn, recorder);
   }
+  return true;
 }
 
 Renderer::Drawn Renderer::DrawView(View& view, const ViewParameters& parameters, double now_s) {
@@ -236,6 +265,11 @@ void Renderer::DrawOverlay(View& view, const ViewParameters& parameters, double 
   overlay_.Draw(view.overlay);
 }
 
+bool Renderer::IsSettled(const View& view, const ViewParameters& parameters) {
+  const DisplayList& terrain = view.channel->terrain_lists.front();
+  return view.has_terrain && terrain.statistics.settled && terrain.view_number == parameters.number;
+}
+
 void Renderer::Report(View& view, double frame_ms, double draw_ms, const Drawn& drawn, FrameRecorder& recorder) {
   const DisplayList& terrain = view.channel->terrain_lists.front();
   FrameReport& report = view.report;
@@ -248,6 +282,8 @@ void Renderer::Report(View& view, double frame_ms, double draw_ms, const Drawn& 
   report.nodes = drawn.nodes;
   report.uploads_pending = view.uploads_pending;
   report.behind = view.has_terrain && terrain.statistics.behind;
+  report.view_number = view.parameters->number;
+  report.settled = IsSettled(view, *view.parameters);
   view.channel->frame.Publish(report);
 
   FrameSample sample;
@@ -296,7 +332,7 @@ Picture Renderer::ReadBack(const View& view, const ViewParameters& parameters, c
   picture.triangles = drawn.triangles;
   picture.nodes = drawn.nodes;
   picture.achieved_error_px = terrain.statistics.achieved_error_px;
-  picture.settled = view.has_terrain && terrain.statistics.settled && terrain.view_number == parameters.number;
+  picture.settled = IsSettled(view, parameters);
   return picture;
 }
 

@@ -51,8 +51,9 @@ class Renderer {
   void AddView(ViewId id, std::shared_ptr<ViewChannel> channel, Presenter* presenter);
   void RemoveView(ViewId id);
 
-  // Draws one frame of all views and adds to `recorder`. `context` is made current again after each Present.
-  void DrawFrame(FrameRecorder& recorder, Context& context);
+  // Draws one frame of all views and adds to `recorder`. `context` is made current again after each Present. A view of
+  // which nothing has changed keeps its picture; false when that is so of all of them.
+  bool DrawFrame(FrameRecorder& recorder, Context& context);
 
   // Draws the lists that the last frame drew once more, and reads them back: at the moment of the newest parameters, so
   // that a view that stands still gives the same picture every time, or at the last frame's, which is where moving
@@ -77,7 +78,10 @@ class Renderer {
   Renderer(const RenderOptions& options, const LayerTable& layers, const Clock& clock, ContextFacts facts);
 
   View* Find(ViewId id);
-  void FetchLists(View& view);
+  // True when a list or parameters came.
+  bool FetchNews(View& view);
+  bool HasToBeDrawn(const View& view) const;
+  static bool IsSettled(const View& view, const ViewParameters& parameters);
   void UploadPages();
   Drawn DrawView(View& view, const ViewParameters& parameters, double now_s);
   void DrawOverlay(View& view, const ViewParameters& parameters, double now_s);
@@ -98,6 +102,7 @@ class Renderer {
   std::vector<std::unique_ptr<View>> views_;
   std::vector<std::string> notices_;
   uint64_t frame_ = 0;
+  uint64_t notices_number_ = 0;
   std::optional<double> last_start_s_;
   double start_s_ = 0;
   double upload_ms_ = 0;

@@ -155,8 +155,7 @@ float SmallDiagonalError(const Surface& surface, const Split& split, Post apex) 
   return std::max(between(apex, split.end_a), between(apex, split.end_b));
 }
 
-float OwnError(const Surface& surface, Post post, int level) {
-  const Split split = SplitAt(post);
+float OwnError(const Surface& surface, Post post, const Split& split, int level) {
   float greatest = surface.ErrorBetween(post, split.end_a, split.end_b);
   if (level == kBisectionLevels - 1) return greatest;
   for (const Post apex : {split.apex_a, split.apex_b}) {
@@ -187,38 +186,31 @@ void ForEachPost(int level, const Visit& visit) {
 
 }  // namespace
 
-std::vector<float> DeltaValues(std::span<const TerrainVertex> vertices, const ErrorBlocks& errors_m) {
-  BELVEDERE_CHECK(vertices.size() == kVerticesPerPage);
-  const Surface surface(vertices, errors_m);
-  std::vector<float> deltas(kVerticesPerPage, 0.0F);
-  for (int level = 0; level < kBisectionLevels; ++level) {
-    ForEachPost(level, [&](Post post) { deltas[static_cast<size_t>(post.index())] = OwnError(surface, post, level); });
-  }
-  // The corners split nothing and are always drawn.
-  const float greatest = *std::max_element(deltas.begin(), deltas.end());
-  for (const Post corner : {Post{0, 0}, Post{kCells, 0}, Post{0, kCells}, Post{kCells, kCells}}) {
-    deltas[static_cast<size_t>(corner.index())] = greatest;
-  }
-  return deltas;
-}
-
-std::array<float, kBisections> SpreadOfLevels(std::span<const TerrainVertex> vertices) {
+DeltaValues DeltaValuesOf(std::span<const TerrainVertex> vertices, const ErrorBlocks& errors_m) {
   BELVEDERE_CHECK(vertices.size() == kVerticesPerPage);
   static_assert(kBisections == kBisectionLevels);
   constexpr float kRoundedUp = 1.000001F;
-  const Surface surface(vertices, {});
-  std::array<float, kBisections> spread{};
+  const Surface surface(vertices, errors_m);
+  DeltaValues values;
+  values.deltas_m.resize(kVerticesPerPage);
   for (int level = 0; level < kBisectionLevels; ++level) {
-    float greatest = 0;
+    float spread_squared = 0;
     ForEachPost(level, [&](Post post) {
       const Split split = SplitAt(post);
+      values.deltas_m[static_cast<size_t>(post.index())] = OwnError(surface, post, split, level);
+      const glm::vec3 position = surface.at(post);
       for (const Post corner : {split.end_a, split.end_b, split.apex_a, split.apex_b}) {
-        if (corner.inside()) greatest = std::max(greatest, surface.SquaredDistance(corner, surface.at(post)));
+        if (corner.inside()) spread_squared = std::max(spread_squared, surface.SquaredDistance(corner, position));
       }
     });
-    spread[static_cast<size_t>(level)] = std::sqrt(greatest) * kRoundedUp;
+    values.spread_m[static_cast<size_t>(level)] = std::sqrt(spread_squared) * kRoundedUp;
   }
-  return spread;
+  // The corners split nothing and are always drawn.
+  const float greatest = *std::max_element(values.deltas_m.begin(), values.deltas_m.end());
+  for (const Post corner : {Post{0, 0}, Post{kCells, 0}, Post{0, kCells}, Post{kCells, kCells}}) {
+    values.deltas_m[static_cast<size_t>(corner.index())] = greatest;
+  }
+  return values;
 }
 
 }  // namespace belvedere

@@ -14,12 +14,14 @@
 
 namespace belvedere {
 
+struct DeltaValues {
+  std::vector<float> deltas_m;                // kVerticesPerPage
+  std::array<float, kBisections> spread_m{};  // TerrainPage::spread_m
+};
+
 // vertices: kVerticesPerPage. errors_m: what the page leaves out with every post drawn, block by block. A delta value
 // is the most, over the posts that the triangles without the post cover, of a post's distance from them and the
 // errors_m around it: taken post by post, so that a cliff and a rough block elsewhere do not add up.
-std::vector<float> DeltaValues(std::span<const TerrainVertex> vertices, const ErrorBlocks& errors_m);
-
-// For each level of bisection, the greatest distance from a post to a corner of the triangles that it splits.
-std::array<float, kBisections> SpreadOfLevels(std::span<const TerrainVertex> vertices);
+DeltaValues DeltaValuesOf(std::span<const TerrainVertex> vertices, const ErrorBlocks& errors_m);
 
 }  // namespace belvedere

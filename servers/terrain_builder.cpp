@@ -173,8 +173,9 @@ std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input) {
   page->node = input.node;
   page->vertices = VerticesOf(input.node, field);
   page->error_m = *std::max_element(errors_m.begin(), errors_m.end());
-  page->deltas = DeltaValues(page->vertices, errors_m);
-  page->spread_m = SpreadOfLevels(page->vertices);
+  DeltaValues values = DeltaValuesOf(page->vertices, errors_m);
+  page->deltas = std::move(values.deltas_m);
+  page->spread_m = values.spread_m;
   page->min_height_m = static_cast<float>(min_height_m);
   page->max_height_m = static_cast<float>(max_height_m);
   const BoundingSphere bounds = BoundsOf(input.node, min_height_m, max_height_m);

@@ -24,6 +24,8 @@ struct FrameReport {
   uint32_t nodes = 0;
   uint32_t uploads_pending = 0;  // pages that the newest lists wished on the GPU and that are not there yet
   bool behind = false;
+  uint64_t view_number = 0;  // ViewParameters::number that was drawn
+  bool settled = false;      // nothing more will come for these parameters
 };
 
 struct ViewChannel {

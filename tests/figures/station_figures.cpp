@@ -6,6 +6,8 @@
 //       20,000 Entity State PDUs a second from 5,000 entities while three views draw
 //   station_figures malformed DATASET FOLDER
 //       sends every .bin file of the folder to a running station, which goes on drawing
+//   station_figures jump DATASET [JUMPS]
+//       from a jump to another place of the Earth to the settled view, and to the first frame there
 //   station_figures soak DATASET [MINUTES]
 //       a random flight in a cache of 256 MiB: bytes and memory of the process by the minute
 //
@@ -139,7 +141,9 @@ int Feed(const std::string& dataset, double seconds) {
 
 int Malformed(const std::string& dataset, const std::string& folder) {
   auto station = StartStation(dataset, 512 * kMiB, true);
-  ViewChannel& channel = station->AddView(ViewFrom(*station, 1, kOverTheSierra, 330, -12), nullptr);
+  ViewParameters flying = ViewFrom(*station, 1, kOverTheSierra, 330, -12);
+  flying.eye_velocity_mps = {0.5, 0, 0};  // a view that stands still is drawn once
+  ViewChannel& channel = station->AddView(flying, nullptr);
   auto sender = dis::UdpSender::Open({"127.0.0.1", kPort}, "");
   if (!sender.ok()) Give(sender.message());
   std::vector<std::filesystem::path> files;
@@ -167,6 +171,46 @@ int Malformed(const std::string& dataset, const std::string& folder) {
   }
   fmt::print("{} datagrams; the station {} drawing\n", files.size(), drawing ? "went on" : "STOPPED");
   return drawing && !files.empty() ? 0 : 1;
+}
+
+int Jump(const std::string& dataset, int jumps) {
+  constexpr double kLongest_s = 30;
+  auto station = StartStation(dataset, 512 * kMiB, false);
+  ViewChannel& channel = station->AddView(ViewFrom(*station, 1, {0, 0, 1.2e7}, 0, -90), nullptr);
+  if (!Settle(*station, 1, 60)) Give("the first view has not settled in 60 s");
+  std::mt19937 random(7);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  std::vector<double> settled_s, first_s;
+  const Clock& clock = Clock::System();
+  for (int jump = 0; jump < jumps; ++jump) {
+    const bool near = jump % 2 == 0;  // every other one low over the inset, between them somewhere else
+    const Geodetic place = near ? Geodetic{uniform(36.8, 38.4), uniform(-120.4, -117.6), uniform(4500, 9000)}
+                                : Geodetic{uniform(-80, 80), uniform(-180, 180), std::pow(10.0, uniform(4.0, 6.5))};
+    ViewParameters view = ViewFrom(*station, 1, place, uniform(0, 360), uniform(-60, -10));
+    view.number = static_cast<uint64_t>(jump) + 2;
+    const double start_s = clock.NowSeconds();
+    channel.parameters.Publish(view);
+    double first = 0;
+    for (;; Sleep(0.002)) {
+      const auto report = channel.frame.Get();
+      const double now_s = clock.NowSeconds() - start_s;
+      if (report->view_number < view.number) continue;
+      if (first == 0) first = now_s;
+      if (report->settled) break;
+      if (now_s > kLongest_s) Give(fmt::format("jump {} has not settled in {} s", jump, kLongest_s));
+    }
+    first_s.push_back(first);
+    settled_s.push_back(clock.NowSeconds() - start_s);
+    fmt::print("jump {:2} to {:7.3f} {:8.3f}, {:8.0f} m: first frame {:.3f} s, settled {:.3f} s\n", jump,
+               place.latitude_deg, place.longitude_deg, place.height_m, first, settled_s.back());
+    std::fflush(stdout);
+  }
+  const double median_s = PercentileOf(settled_s, 0.5);
+  fmt::print("{} jumps: first frame median {:.3f} s, settled median {:.3f} s, longest {:.3f} s (limit 1)\n", jumps,
+             PercentileOf(first_s, 0.5), median_s, *std::max_element(settled_s.begin(), settled_s.end()));
+  return *std::max_element(settled_s.begin(), settled_s.end()) < 1.0 ? 0 : 1;
 }
 
 size_t ResidentBytesOfProcess() {
@@ -235,8 +279,9 @@ int Run(const std::vector<std::string>& words) {
   if (words.size() >= 2 && words[0] == "views") return Views(words[1]);
   if (words.size() >= 2 && words[0] == "feed") return Feed(words[1], number(2, 30));
   if (words.size() >= 3 && words[0] == "malformed") return Malformed(words[1], words[2]);
+  if (words.size() >= 2 && words[0] == "jump") return Jump(words[1], static_cast<int>(number(2, 20)));
   if (words.size() >= 2 && words[0] == "soak") return Soak(words[1], number(2, 20));
-  fmt::print(stderr, "usage: station_figures views|feed|malformed|soak DATASET [SECONDS|FOLDER|MINUTES]\n");
+  fmt::print(stderr, "usage: station_figures views|feed|malformed|jump|soak DATASET [SECONDS|FOLDER|JUMPS|MINUTES]\n");
   return 2;
 }
 

@@ -66,6 +66,9 @@ TEST_F(Thread, RedrawsTheSameListsAsOftenAsAsked) {
 TEST_F(Thread, RecordsEveryFrame) {
   ASSERT_NO_FATAL_FAILURE(Start(0));
   const auto channel = Channel();
+  ViewParameters flying = *channel->parameters.Get();
+  flying.eye_velocity_mps = {1, 0, 0};
+  channel->parameters.Publish(flying);
   thread_->AddView(5, channel);
   WaitForFrames(*channel, 3);
   const auto samples = thread_->TakeSamples();

@@ -66,7 +66,7 @@ class Drawing : public ::testing::Test {
     return stage_->Take();
   }
 
-  const ManualClock clock_;
+  ManualClock clock_;
   Scene scene_;
   std::unique_ptr<Stage> stage_;
   std::vector<Quadcode> nodes_;
@@ -264,6 +264,40 @@ TEST_F(Drawing, AMinimisedWindowIsSkipped) {
   stage_->Frame();
   EXPECT_EQ(stage_->channel->frame.Get()->frame, 0U);
   EXPECT_FALSE(stage_->renderer->Capture(1, Renderer::Moment::kOfParameters).ok());
+}
+
+TEST_F(Drawing, AViewOfWhichNothingChangesKeepsItsPicture) {
+  Load(Block(10, 10, 12, 3), Rugged);
+  ViewParameters view = LookAt({10, 10, 3000}, 0, -90, kWidth, kHeight);
+  Draw(view);
+  const auto frames = [&] { return stage_->channel->frame.Get()->frame; };
+  const uint64_t before = frames();
+  stage_->Frame();
+  stage_->Frame();
+  EXPECT_EQ(frames(), before);
+  stage_->recorder.Take();
+
+  view.number = 2;
+  stage_->channel->parameters.Publish(view);
+  stage_->Frame();
+  EXPECT_EQ(frames(), before + 1) << "other parameters";
+  EXPECT_EQ(stage_->recorder.Take().back().frame_ms, 0.0) << "a frame after a pause is not a late one";
+  stage_->channel->terrain_lists.Publish();
+  stage_->Frame();
+  EXPECT_EQ(frames(), before + 2) << "another list";
+  stage_->renderer->SetNotices({"a page failed"});
+  stage_->Frame();
+  EXPECT_EQ(frames(), before + 3) << "another notice";
+  stage_->renderer->SetNotices({"a page failed"});
+  stage_->Frame();
+  EXPECT_EQ(frames(), before + 3);
+  clock_.Advance(1.5);
+  stage_->Frame();
+  EXPECT_EQ(frames(), before + 4) << "the sun goes on";
+  view.eye_velocity_mps = {100, 0, 0};
+  stage_->channel->parameters.Publish(view);
+  for (int i = 0; i < 3; ++i) stage_->Frame();
+  EXPECT_EQ(frames(), before + 7) << "an eye that flies";
 }
 
 TEST_F(Drawing, TheHudIsDrawnOverThePicture) {
