@@ -25,8 +25,8 @@ double KeptTriangles::GrowthOfError(const Kept& kept, const CutNode& node, const
 
 KeptTriangles::Choice KeptTriangles::For(const CutNode& node, const Sight& sight, const Frame& frame, double error_px) {
   Kept& kept = kept_[node.node];
-  const double growth = kept.page != nullptr && kept.error_px == error_px ? GrowthOfError(kept, node, sight)
-                                                                          : std::numeric_limits<double>::infinity();
+  const double growth = kept.page == nullptr ? std::numeric_limits<double>::infinity()
+                                             : GrowthOfError(kept, node, sight) * kept.error_px / error_px;
   // Growth is at least 1 for an eye that moves; where errors shrink by more than the margin, fewer triangles would do.
   const bool holds = growth <= 1.0 + kKeepMargin && growth >= 1.0 - kKeepMargin;
   kept.list = list_;

@@ -1,6 +1,7 @@
 #include "managers/terrain_manager.h"
 
 #include "managers/cut.h"
+#include "managers/held_bound.h"
 #include "managers/list_pages.h"
 #include "managers/paced_thread.h"
 #include "managers/surface_mesh.h"
@@ -70,14 +71,17 @@ class TerrainManager::Worker {
     list.statistics.height_above_ground_m = std::max(0.0, eye.height_m - (ground ? ground->height_m : 0.0));
     const ViewMatrices matrices = MatricesOf(view, now_s, list.statistics.height_above_ground_m);
 
+    ViewParameters held = view;
+    held.error_px = bound_.Next(view, *channel_->frame.Get(), number_ + 1);
+    list.statistics.held_error_px = held.error_px;
     ListPages pages(paging_, terrain_, list);
     CutLimits limits;
     if (static_cast<double>(paging_.cache.PinnedBytes()) >
         kPinnedShareOfBudget * static_cast<double>(paging_.cache.budget_bytes())) {
       limits.max_nodes = std::min(limits.max_nodes, last_nodes_);
     }
-    const Cut cut = SelectCut(view, matrices, paging_.layers, terrain_, limits, pages);
-    const MeshStatistics mesh = BuildSurface(cut.nodes, SightOf(view, matrices.eye_ecef), view.error_px, kept_, list);
+    const Cut cut = SelectCut(held, matrices, paging_.layers, terrain_, limits, pages);
+    const MeshStatistics mesh = BuildSurface(cut.nodes, SightOf(view, matrices.eye_ecef), held.error_px, kept_, list);
     last_nodes_ = static_cast<int>(cut.nodes.size());
     list.records = cut.records;
     list.volumes = cut.volumes;
@@ -105,6 +109,7 @@ class TerrainManager::Worker {
   uint64_t settled_number_ = 0;
   int last_nodes_ = 0;
   KeptTriangles kept_;
+  HeldBound bound_;
   double last_list_s_ = 0;
   std::atomic<double> scene_hz_{0};
   PacedThread thread_;  // last: it stops before the members above go

@@ -22,6 +22,7 @@ struct FrameSample {
   double draw_ms = 0;      // the render thread's own work on this view
   uint32_t triangles = 0;  // after culling
   uint32_t nodes = 0;
+  double held_error_px = 0;  // DisplayList::Statistics
   double achieved_error_px = 0;
   bool behind = false;
   bool has_terrain = false;  // a terrain list was there to draw

@@ -33,9 +33,13 @@ GLuint Compile(std::string_view name, GLenum stage, const std::string& source, c
 void FramesInFlight::EndFrame() {
   GLsync ended = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   glFlush();
-  if (previous_ != nullptr) glClientWaitSync(previous_, 0, kLongestWait_ns);
-  Forget();
+  Drain();
   previous_ = ended;
+}
+
+void FramesInFlight::Drain() {
+  if (previous_ != nullptr) glClientWaitSync(previous_, GL_SYNC_FLUSH_COMMANDS_BIT, kLongestWait_ns);
+  Forget();
 }
 
 void FramesInFlight::Forget() {

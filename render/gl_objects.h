@@ -85,6 +85,8 @@ class FramesInFlight {
   ~FramesInFlight() { Forget(); }
   // All commands of a frame have been given. Returns when the frame before it is drawn.
   void EndFrame();
+  // Returns when all frames are drawn: before something is written that they may still read.
+  void Drain();
 
  private:
   void Forget();

@@ -15,6 +15,7 @@ struct HudFacts {
   double frame_ms = 0;
   double draw_ms = 0;
   double error_asked_px = 0;
+  double error_held_px = 0;  // over what was asked only for a frame-time target
   double error_achieved_px = 0;
   uint32_t pages_waiting = 0;
   uint32_t uploads_pending = 0;

@@ -148,13 +148,18 @@ bool Renderer::HasToBeDrawn(const View& view) const {
 
 void Renderer::UploadPages() {
   const TraceSpan span("render.upload");
-  const double start_s = clock_.NowSeconds();
   const uint64_t bytes_before = pages_.uploaded_bytes();
   std::vector<std::span<const PagePin>> wishes;
   for (const auto& view : views_) {
     wishes.emplace_back(view->channel->terrain_lists.front().uploads);
     wishes.emplace_back(view->channel->object_lists.front().uploads);
   }
+  const auto is_to_do = [](const PagePin& pin) { return !pin.page().residency()->on_gpu(); };
+  const bool any = std::any_of(wishes.begin(), wishes.end(), [&](std::span<const PagePin> pins) {
+    return std::any_of(pins.begin(), pins.end(), is_to_do);
+  });
+  if (any) in_flight_.Drain();  // so that the budget is spent on uploads and not on waiting
+  const double start_s = clock_.NowSeconds();
   for (const PagePin* pin : FairUploadOrder(wishes, frame_)) {
     pages_.Upload(*pin, frame_);
     if ((clock_.NowSeconds() - start_s) * 1000 >= options_.upload_budget_ms) break;
@@ -163,8 +168,7 @@ void Renderer::UploadPages() {
     view->uploads_pending = 0;
     for (const DisplayList* list : {&view->channel->terrain_lists.front(), &view->channel->object_lists.front()}) {
       view->uploads_pending +=
-          static_cast<uint32_t>(std::count_if(list->uploads.begin(), list->uploads.end(),
-                                              [](const PagePin& pin) { return !pin.page().residency()->on_gpu(); }));
+          static_cast<uint32_t>(std::count_if(list->uploads.begin(), list->uploads.end(), is_to_do));
     }
   }
   upload_bytes_ = pages_.uploaded_bytes() - bytes_before;
@@ -200,6 +204,7 @@ bool Renderer::DrawFrame(FrameRecorder& recorder, Context& context) {
     }
     Report(*view, frame_ms, draw_ms, drawn, recorder);
   }
+  busy_ms_ = (clock_.NowSeconds() - start_s_) * 1000;
   return true;
 }
 
@@ -246,6 +251,7 @@ void Renderer::DrawOverlay(View& view, const ViewParameters& parameters, double 
       facts.frame_ms = view.report.frame_ms;
       facts.draw_ms = view.report.draw_ms;
       facts.error_asked_px = parameters.error_px;
+      facts.error_held_px = terrain.held_error_px;
       facts.error_achieved_px = terrain.achieved_error_px;
       facts.pages_waiting = terrain.pages_waiting;
       facts.uploads_pending = view.uploads_pending;
@@ -278,6 +284,7 @@ void Renderer::Report(View& view, double frame_ms, double draw_ms, const Drawn& 
   report.object_list = view.has_objects ? view.channel->object_lists.front().number : 0;
   report.draw_ms = draw_ms;
   report.frame_ms = frame_ms;
+  report.busy_ms = busy_ms_;
   report.triangles = drawn.triangles;
   report.nodes = drawn.nodes;
   report.uploads_pending = view.uploads_pending;
@@ -294,6 +301,7 @@ void Renderer::Report(View& view, double frame_ms, double draw_ms, const Drawn& 
   sample.draw_ms = draw_ms;
   sample.triangles = drawn.triangles;
   sample.nodes = drawn.nodes;
+  sample.held_error_px = terrain.statistics.held_error_px;
   sample.achieved_error_px = terrain.statistics.achieved_error_px;
   sample.behind = report.behind;
   sample.has_terrain = view.has_terrain;

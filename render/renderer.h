@@ -106,6 +106,7 @@ class Renderer {
   std::optional<double> last_start_s_;
   double start_s_ = 0;
   double upload_ms_ = 0;
+  double busy_ms_ = 0;  // of the last frame
   uint64_t upload_bytes_ = 0;
 };
 

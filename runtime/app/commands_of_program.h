@@ -26,6 +26,7 @@ struct TourOptions {
   PictureSize size{1024, 768};
   int views = 1;
   double error_px = 2, texel_px = 1.25;
+  double frame_ms = 0;
   int traffic = 0;
   bool headless = false;
   std::string frames_folder;

@@ -58,6 +58,9 @@ void AddTour(CLI::App& program, TourOptions& options, Texts& texts) {
   command->add_option("--texel-px", options.texel_px, "bound on a texel's size")
       ->check(CLI::Range(0.25, 100.0))
       ->capture_default_str();
+  command->add_option("--frame-ms", options.frame_ms, "where frames take longer, the bound is loosened; 0 for never")
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str();
   command->add_option("--traffic", options.traffic, "synthetic moving objects, over a loopback socket")
       ->check(CLI::Range(0, 100'000));
   command->add_flag("--headless", options.headless, "off-screen, also where there is a display");

@@ -167,6 +167,7 @@ Result<StationSpec> ParseStation(std::string_view text, const std::string& name,
   if (const auto models = root.String("models")) station.models = Resolved(*models, folder);
   Assign(root.Integer("cache_MiB", 16, 1 << 20), station.cache_MiB);
   Assign(root.Number("exaggeration", 0.1, 100), station.exaggeration);
+  Assign(root.Number("frame_ms", 0, 1000), station.frame_ms);
   ReadTime(root, station);
   if (auto feed = root.Table("feed")) station.feed = ReadFeed(*feed);
   if (auto render = root.Table("render")) ReadRender(*render, station.render);

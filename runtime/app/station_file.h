@@ -57,6 +57,7 @@ struct StationSpec {
   std::string models;   // folder of models with their catalogue.toml; empty: the project's own
   int64_t cache_MiB = 512;
   double exaggeration = 1;
+  double frame_ms = 0;          // the bound on the error is loosened where frames take longer; 0: never
   std::optional<double> utc_s;  // simulated time at the start; nullopt: the real time
   RenderOptions render;
   FeedSpec feed;

@@ -169,6 +169,7 @@ ViewParameters Tour::ParametersAt(int view, double elapsed_s, bool frozen) {
   parameters.width_px = options_.size.width_px;
   parameters.height_px = options_.size.height_px;
   parameters.error_px = options_.error_px;
+  parameters.target_frame_ms = options_.frame_ms;
   parameters.texel_px = options_.texel_px;
   parameters.image_layers = layers_;
   parameters.hud = options_.hud;

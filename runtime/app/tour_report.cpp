@@ -86,11 +86,14 @@ void AddFrames(const TourReport& report, Json& json) {
   json["scene_hz"] = std::move(scene_hz);
   json["triangles"] = MeanAndMax(Series(report.samples, [](const FrameSample& sample) { return sample.triangles; }));
   json["nodes"] = MeanAndMax(Series(report.samples, [](const FrameSample& sample) { return sample.nodes; }));
-  std::vector<double> achieved;
+  std::vector<double> achieved, held;
   for (const FrameSample& sample : report.samples) {
-    if (sample.has_terrain) achieved.push_back(sample.achieved_error_px);
+    if (!sample.has_terrain) continue;
+    achieved.push_back(sample.achieved_error_px);
+    held.push_back(sample.held_error_px);
   }
   json["achieved_error_px"] = PercentilesJson(achieved, false);
+  json["held_error_px"] = PercentilesJson(held, false);
   json["behind_frames"] = std::count_if(frames.begin(), frames.end(), [](const Frame& frame) { return frame.behind; });
   json["first_image_s"] = Rounded(report.first_image_s);
 }

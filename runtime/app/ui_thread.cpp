@@ -81,6 +81,7 @@ Status UiThread::OpenView(const WindowSpec& window) {
 ViewParameters UiThread::ParametersOf(const View& view, double now_s) {
   ViewParameters parameters = view.pilot->Parameters(++number_, now_s, UtcAt(now_s));
   parameters.exaggeration = spec_.exaggeration;
+  parameters.target_frame_ms = spec_.frame_ms;
   return parameters;
 }
 

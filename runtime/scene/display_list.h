@@ -115,10 +115,11 @@ struct DisplayList {
   struct Statistics {
     uint32_t triangles = 0;
     uint32_t nodes = 0;
-    double achieved_error_px = 0;      // largest screen-space error that the list leaves within the view
-    uint32_t pages_waiting = 0;        // pages wished for and not yet drawn
-    bool behind = false;               // some visible quadnode is coarser than the bound asks
-    bool settled = false;              // nothing more will come for these view parameters
+    double held_error_px = 0;      // the bound that the list keeps: the one asked, or looser for a frame-time target
+    double achieved_error_px = 0;  // largest screen-space error that the list leaves within the view
+    uint32_t pages_waiting = 0;    // pages wished for and not yet drawn
+    bool behind = false;           // some visible quadnode is coarser than the bound asks
+    bool settled = false;          // nothing more will come for these view parameters
     double height_above_ground_m = 0;  // of the eye, over the finest resident surface under it
     double build_ms = 0;
   } statistics;

@@ -20,6 +20,7 @@ struct FrameReport {
   uint64_t object_list = 0;
   double draw_ms = 0;      // the render thread's own work on this view
   double frame_ms = 0;     // from one frame's start to the next
+  double busy_ms = 0;      // the render thread's work on the last frame before this, of all views
   uint32_t triangles = 0;  // after culling
   uint32_t nodes = 0;
   uint32_t uploads_pending = 0;  // pages that the newest lists wished on the GPU and that are not there yet

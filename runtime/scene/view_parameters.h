@@ -38,9 +38,11 @@ struct ViewParameters {
   double ortho_height_m = 1e6;               // orthographic: ground that the height of the picture spans
   int width_px = 1024, height_px = 768;
 
-  double exaggeration = 1.0;           // of heights, as the station's pages have it: how far one sees
-  double error_px = 2.0;               // bound on the screen-space error
-  double texel_px = 1.25;              // bound on the size of a texel on the screen
+  double exaggeration = 1.0;   // of heights, as the station's pages have it: how far one sees
+  double error_px = 2.0;       // bound on the screen-space error
+  double target_frame_ms = 0;  // where frames take longer, error_px is loosened; 0: it is kept whatever it costs
+  double most_error_px = 8.0;  // to which it is loosened at most
+  double texel_px = 1.25;      // bound on the size of a texel on the screen
   std::vector<DataType> image_layers;  // drawn over each other in this order: first a colour layer, then overlays
   bool draw_objects = true;
   bool symbols = false;  // objects as symbols of constant size instead of models (the overview)

@@ -25,6 +25,7 @@ dataset = "earth"
 models = "/my/models"
 cache_MiB = 256
 exaggeration = 2
+frame_ms = 25
 time = "2026-06-21T19:30:00Z"
 [feed]
 listen = ["127.0.0.1:3000", "239.1.2.3:3001"]
@@ -63,6 +64,7 @@ position = [10, -20]
   EXPECT_EQ(station->models, "/my/models");
   EXPECT_EQ(station->cache_MiB, 256);
   EXPECT_EQ(station->exaggeration, 2);
+  EXPECT_EQ(station->frame_ms, 25);
   EXPECT_EQ(station->utc_s, 1782070200.0);
   EXPECT_EQ(station->feed.listen.size(), 2U);
   EXPECT_EQ(station->feed.exercise, 7);

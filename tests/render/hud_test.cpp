@@ -29,6 +29,15 @@ TEST(Hud, SaysWhatItWasGiven) {
   EXPECT_EQ(lines[4], facts.notices[0]);
 }
 
+TEST(Hud, SaysWhatIsHeldInPlaceOfWhatWasAsked) {
+  HudFacts facts;
+  facts.has_terrain = true;
+  facts.error_asked_px = 1;
+  facts.error_held_px = 1.6;
+  facts.error_achieved_px = 1.5;
+  EXPECT_NE(HudLines(facts)[1].find("error 1.0 px asked, holding 1.6"), std::string::npos) << HudLines(facts)[1];
+}
+
 TEST(Hud, BoundsItsNotices) {
   HudFacts facts;
   facts.notices.assign(100, std::string(10'000, 'x'));
