@@ -63,6 +63,39 @@ std::optional<Heights> FinestHeights(ReadContext& context, const Dataset& datase
   }
 }
 
+// The quadnode of the same level beside it, so many columns east and rows north; none beyond the poles.
+std::optional<Quadcode> Beside(Quadcode node, int east, int north) {
+  const int64_t row = node.row() + north;
+  if (row < 0 || row >= int64_t{kTreeRows} << node.level()) return std::nullopt;
+  return Quadcode::FromColumnRow(node.level(), node.column() + east, row);
+}
+
+// TerrainInput::border_errors_m of a quadnode without finer heights.
+ErrorBlocks BorderErrors(ReadContext& context, const Dataset& dataset, int layer, DataType type, Quadcode node) {
+  ErrorBlocks errors_m{};
+  struct Side {
+    int east, north;
+  };
+  for (const Side side : {Side{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+    const std::optional<Quadcode> neighbour = Beside(node, side.east, side.north);
+    if (!neighbour || !dataset.Exists(layer, *neighbour) || !dataset.HasChildren(layer, *neighbour)) continue;
+    const Result<PagePin> page = context.Obtain(type, *neighbour);
+    if (!page.ok()) continue;  // marked in the cache; its ground is an ancestor's, as smooth as this
+    const ErrorBlocks& theirs_m = page->as<ElevationPage>().block_errors_m;
+    for (int along = 0; along < kErrorBlocks; ++along) {
+      constexpr int kLast = kErrorBlocks - 1;
+      const auto block = [&](int at_low, int at_high) {
+        const int column = side.east == 0 ? along : side.east < 0 ? at_low : at_high;
+        const int row = side.north == 0 ? along : side.north < 0 ? at_low : at_high;
+        return static_cast<size_t>(row * kErrorBlocks + column);
+      };
+      float& own_m = errors_m[block(0, kLast)];
+      own_m = std::max(own_m, theirs_m[block(kLast, 0)]);
+    }
+  }
+  return errors_m;
+}
+
 Result<std::unique_ptr<Page>> ReadTerrain(ReadContext& context, const Dataset& dataset, const std::optional<int>& layer,
                                           DataType elevation, Quadcode node, double exaggeration) {
   TerrainInput input{.node = node, .heights = nullptr, .heights_node = node, .exaggeration = exaggeration};
@@ -76,6 +109,9 @@ Result<std::unique_ptr<Page>> ReadTerrain(ReadContext& context, const Dataset& d
     input.heights_node = heights->node;
   }
   input.finer_exists = dataset.HasChildren(*layer, node);
+  if (heights && heights->node == node && !input.finer_exists) {
+    input.border_errors_m = BorderErrors(context, dataset, *layer, elevation, node);
+  }
   return std::unique_ptr<Page>(BuildTerrain(input));
 }
 

@@ -173,6 +173,10 @@ std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input) {
   page->node = input.node;
   page->vertices = VerticesOf(input.node, field);
   page->error_m = *std::max_element(errors_m.begin(), errors_m.end());
+  for (size_t block = 0; block < errors_m.size(); ++block) {
+    const float beside_m = input.border_errors_m[block] * static_cast<float>(input.exaggeration);
+    errors_m[block] = std::max(errors_m[block], beside_m);
+  }
   DeltaValues values = DeltaValuesOf(page->vertices, errors_m);
   page->deltas = std::move(values.deltas_m);
   page->spread_m = values.spread_m;

@@ -15,7 +15,6 @@
 //
 // Vertical exaggeration multiplies heights before anything is made of them.
 //
-// Source of the nesting: Lindstrom, Pascucci, "Visualization of large terrains made easy" (Visualization 2001).
 // Units: metres. Frames: frame.h. Threads: pure.
 #pragma once
 
@@ -34,6 +33,10 @@ struct TerrainInput {
   // Finer heights than these lie under the quadnode. Without heights: finer quadnodes exist at all.
   bool finer_exists = false;
   double exaggeration = 1;  // > 0
+  // What finer pages beside a quadnode that has none add along the border that they share, in the blocks that touch it:
+  // there the drawn surface leaves the quadnode's own for the neighbour's posts. Part of delta values, so that it
+  // happens within one cell, and not of error_m, which finer pages could cure.
+  ErrorBlocks border_errors_m{};
 };
 
 std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input);

@@ -106,6 +106,25 @@ TEST(StockModules, ImageryFinerThanHeightsLiesOnInterpolatedOnes) {
   EXPECT_EQ(terrain->as<TerrainPage>().vertices[5000].z, expected->vertices[5000].z);
 }
 
+// Where the data of a quadnode end and its neighbour's go on, what is finer there must not pull at large triangles.
+TEST(StockModules, FinerPagesBesideAQuadnodeRaiseItsDeltaValuesAlongTheBorder) {
+  House house;
+  const Result<PagePin> beside = house.Read("terrain", Quadcode::Root(21));  // east of root 20, which goes on
+  const Result<PagePin> away = house.Read("terrain", Quadcode::Root(23));
+  ASSERT_TRUE(beside.ok() && away.ok());
+  const auto& page = beside->as<TerrainPage>();
+  EXPECT_EQ(page.error_m, 0);
+  const auto delta_m = [&](int column, int row) { return page.deltas[static_cast<size_t>(row * kPosts + column)]; };
+  const auto root = MakeElevation(Quadcode::Root(21), WavyHeight);
+  const auto alone = BuildTerrain({Quadcode::Root(21), root.get(), Quadcode::Root(21), false, 1});
+  for (const int row : {3, 60, 125}) {
+    const auto inner = static_cast<size_t>(row * kPosts + 1);
+    const auto far = static_cast<size_t>(row * kPosts + 101);
+    EXPECT_GE(delta_m(1, row), 50 + 0.9F * alone->deltas[inner]);
+    EXPECT_EQ(delta_m(101, row), alone->deltas[far]);
+  }
+}
+
 TEST(StockModules, ADamagedPageIsKnownAndItsGroundFallsBack) {
   SmallDatasetOptions options;
   options.damaged = kFine.Child(3);
