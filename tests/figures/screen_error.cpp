@@ -2,8 +2,10 @@
 //
 // Each pixel of a settled picture is taken back to where it lies on the drawn surface; the full-resolution surface at
 // that latitude and longitude is that of the finest page's triangles; both points are projected by clip_from_ecef, and
-// their distance on the picture is the error. Poses lie on every continent and ocean, over the inset and its border, at
-// the poles and across 180 E; half of them with heights exaggerated ten times.
+// their distance on the picture is the error. Where that is over the bound, the full-resolution surface a little before
+// and behind along the line of sight is tried too: on a wall seen edge-on, its nearest point is not the one above or
+// below. Poses lie anywhere on the Earth, over the inset and its border, at the poles and at 180 E; half of them with
+// heights exaggerated ten times.
 //
 // Usage: screen_error DATASET [POSES [BOUND_PX]]
 // Prints a line a pose and the worst; exits 1 when a point is over the bound by more than 0.1 px, or a view does not
@@ -32,6 +34,7 @@ constexpr ViewId kView = 1;
 constexpr int kWidth_px = 640, kHeight_px = 480;
 constexpr int kStride_px = 3;  // every third pixel of every third row
 constexpr double kOverBound_px = 0.1;
+constexpr int kTriesAlongSight = 400;
 constexpr double kLongestSettling_s = 60;
 constexpr std::chrono::milliseconds kLook{10};
 
@@ -91,7 +94,7 @@ struct Errors {
   Geodetic worst_place;
 };
 
-Errors Measure(const Picture& picture, FullSurface& surface) {
+Errors Measure(const Picture& picture, FullSurface& surface, double bound_px) {
   Errors errors;
   double worst = 0;
   const ViewMatrices& matrices = picture.matrices;
@@ -111,8 +114,19 @@ Errors Measure(const Picture& picture, FullSurface& surface) {
                                  -depth_m);
       const glm::dvec3 drawn = glm::transpose(glm::dmat3(matrices.camera_from_ecef)) * in_camera + matrices.eye_ecef;
       const Geodetic place = ToGeodetic(drawn);
-      const glm::dvec3 full = surface.At(place.latitude_deg, place.longitude_deg);
-      errors.px.push_back(glm::distance(on_picture(drawn), on_picture(full)));
+      const auto error_at = [&](const glm::dvec3& point) {
+        const Geodetic below = ToGeodetic(point);
+        return glm::distance(on_picture(drawn), on_picture(surface.At(below.latitude_deg, below.longitude_deg)));
+      };
+      double error_px = error_at(drawn);
+      if (error_px > bound_px) {
+        const double size_m = error_px * depth_m / matrices.pixels_per_radian;
+        const glm::dvec3 along = glm::normalize(drawn - matrices.eye_ecef);
+        for (int step = -kTriesAlongSight; step <= kTriesAlongSight; ++step) {
+          error_px = std::min(error_px, error_at(drawn + (2.0 * size_m * step / kTriesAlongSight) * along));
+        }
+      }
+      errors.px.push_back(error_px);
       if (errors.px.back() <= worst) continue;
       worst = errors.px.back();
       errors.worst_place = place;
@@ -170,7 +184,7 @@ double Run(const Dataset& dataset, const std::string& path, int poses, double bo
     view.ecef_from_camera = chance.AxesAt(place, -80, 0);
     view.time_s = Clock::System().NowSeconds();
     ++view.number;
-    Errors errors = Measure(Settled(**station, channel, view), surface);
+    Errors errors = Measure(Settled(**station, channel, view), surface, bound_px);
     if (errors.px.empty()) continue;
     const double worst = *std::max_element(errors.px.begin(), errors.px.end());
     fmt::print(
