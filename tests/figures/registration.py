@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Registration: marks at known places in a source, found again in snapshots.
 
 Makes an image with bright discs at known latitudes and longitudes and a hilly elevation source, builds a dataset of
