@@ -103,7 +103,7 @@ class Selection {
     std::vector<size_t> roots(branches_.size());
     std::iota(roots.begin(), roots.end(), size_t{0});
     // The worst first, so that where a limit ends it, what is left is the least.
-    while (!coarse_.empty() && drawn_ + 3 <= limits_.max_nodes) {
+    while (!coarse_.empty() && drawn_ + awaited_ + 3 <= limits_.max_nodes) {
       std::pop_heap(coarse_.begin(), coarse_.end());
       const size_t branch = coarse_.back().branch;
       coarse_.pop_back();
@@ -163,7 +163,7 @@ class Selection {
   void Refine(size_t index) {
     const Branch parent = branches_[index];
     std::array<int, 4> slots{};
-    bool all = true;
+    bool all = true, any_coming = false;
     for (int which = 0; which < 4; ++which) {
       const Quadcode child = parent.node.Child(which);
       if (const std::optional<int> slot = Drawable(child)) {
@@ -174,7 +174,9 @@ class Selection {
       cut_.waiting |= coming;
       cut_.behind |= parent.measure.share >= 1.0 && coming;
       all = false;
+      any_coming |= coming;
     }
+    if (any_coming) awaited_ += 3;
     if (!all) return;
     branches_[index].first_child = branches_.size();
     --drawn_;
@@ -343,6 +345,7 @@ class Selection {
   std::vector<Branch> branches_;  // the roots first
   std::vector<Coarse> coarse_;    // a heap, the worst on top
   int drawn_ = 0;                 // branches without children
+  int awaited_ = 0;               // by which drawn_ will grow when the pages wished for have come
   Cut cut_;
 };
 

@@ -19,16 +19,19 @@ namespace {
 constexpr double kListsPerSecond = 34.0;
 constexpr double kPinnedShareOfBudget = 0.8;  // of the cache; over it, cuts stop growing
 constexpr double kRateSmoothing = 0.1;
+// A quadtree has a third as many quadnodes above its leaves; and a cut that moves needs room for what comes.
+constexpr double kCutShareOfSlots = 0.65;
 
 }  // namespace
 
 class TerrainManager::Worker {
  public:
-  Worker(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, const Clock& clock)
+  Worker(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, int gpu_slots, const Clock& clock)
       : view_id_(view),
         paging_(paging),
         channel_(std::move(channel)),
         clock_(clock),
+        most_nodes_(std::min(CutLimits{}.max_nodes, static_cast<int>(kCutShareOfSlots * gpu_slots))),
         terrain_(TerrainType(paging.layers)),
         thread_("terrain manager", kListsPerSecond, [this] { Step(); }) {}
 
@@ -75,7 +78,7 @@ class TerrainManager::Worker {
     held.error_px = bound_.Next(view, *channel_->frame.Get(), number_ + 1);
     list.statistics.held_error_px = held.error_px;
     ListPages pages(paging_, terrain_, list);
-    CutLimits limits;
+    CutLimits limits{most_nodes_};
     if (static_cast<double>(paging_.cache.PinnedBytes()) >
         kPinnedShareOfBudget * static_cast<double>(paging_.cache.budget_bytes())) {
       limits.max_nodes = std::min(limits.max_nodes, last_nodes_);
@@ -104,6 +107,7 @@ class TerrainManager::Worker {
   Paging& paging_;
   const std::shared_ptr<ViewChannel> channel_;
   const Clock& clock_;
+  const int most_nodes_;
   const DataType terrain_;
   uint64_t number_ = 0;
   uint64_t settled_number_ = 0;
@@ -115,8 +119,11 @@ class TerrainManager::Worker {
   PacedThread thread_;  // last: it stops before the members above go
 };
 
-TerrainManager::TerrainManager(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, const Clock& clock)
-    : worker_(std::make_unique<Worker>(view, paging, std::move(channel), clock)), view_(view), paging_(paging) {}
+TerrainManager::TerrainManager(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, int gpu_slots,
+                               const Clock& clock)
+    : worker_(std::make_unique<Worker>(view, paging, std::move(channel), gpu_slots, clock)),
+      view_(view),
+      paging_(paging) {}
 
 TerrainManager::~TerrainManager() {
   worker_.reset();

@@ -71,11 +71,12 @@ class Station {
     std::unique_ptr<ObjectManager> objects;
   };
 
-  explicit Station(const Clock& clock) : clock_(clock) {}
+  Station(const Clock& clock, int terrain_slots) : clock_(clock), terrain_slots_(terrain_slots) {}
   Status StartPaging(const StationOptions& options);
   void StartReceivers(const FeedSpec& feed);
 
   const Clock& clock_;
+  const int terrain_slots_;  // on the GPU
   std::unique_ptr<Dataset> dataset_;
   Catalogue catalogue_;
   ModuleRegistry registry_;

@@ -2,6 +2,10 @@
 //
 //   station_figures views DATASET
 //       bytes in the cache with three views of one place over those with one
+//   station_figures places DATASET [SECONDS]
+//       pixels a second with four views of four places over those with one view of one
+//   station_figures poles DATASET
+//       quadnodes and triangles of views at the poles over those at the equator, from the same heights
 //   station_figures feed DATASET [SECONDS]
 //       20,000 Entity State PDUs a second from 5,000 entities while three views draw
 //   station_figures malformed DATASET FOLDER
@@ -38,15 +42,20 @@ const Geodetic kOverTheSierra{37.0, -118.6, 6500};
 
 [[noreturn]] void Give(const std::string& line) {
   fmt::print(stderr, "station_figures: {}\n", line);
-  std::exit(1);
+  std::fflush(stdout);
+  std::_Exit(1);  // a station may be running
 }
 
-std::unique_ptr<Station> StartStation(const std::string& dataset, size_t cache_bytes, bool with_feed) {
+std::unique_ptr<Station> StartStation(const std::string& dataset, size_t cache_bytes, bool with_feed,
+                                      double max_fps = 60, int slots = 960) {
   Result<std::unique_ptr<Context>> context = MakeOffscreenContext();
   if (!context.ok()) Give(context.message());
   StationOptions options;
   options.dataset = dataset;
   options.cache_bytes = cache_bytes;
+  options.render.max_fps = max_fps;
+  options.render.terrain_slots = slots;
+  options.render.overlay_slots = slots;
   if (with_feed) {
     options.feed.listen = {fmt::format("127.0.0.1:{}", kPort)};
     options.feed.exercise = 1;
@@ -97,6 +106,90 @@ int Views(const std::string& dataset) {
   fmt::print("cache with one view {} MiB, with three of the same place {} MiB: ratio {:.3f} (limit 1.1)\n", one / kMiB,
              three / kMiB, ratio);
   return ratio < 1.1 ? 0 : 1;
+}
+
+// Pixels a second that a station draws while its views turn slowly.
+double PixelsPerSecond(Station& station, const std::vector<ViewParameters>& views, double seconds) {
+  std::vector<ViewChannel*> channels;
+  for (const ViewParameters& view : views) channels.push_back(&station.AddView(view, nullptr));
+  for (const ViewParameters& view : views) {
+    if (!Settle(station, view.view, 120)) Give("a view has not settled in 120 s");
+  }
+  const double start_s = Clock::System().NowSeconds();
+  station.render().TakeSamples();
+  double gone_s = 0;
+  for (uint64_t number = 2; gone_s < seconds; ++number) {
+    for (size_t i = 0; i < views.size(); ++i) {
+      ViewParameters turned = views[i];
+      turned.number = number;
+      turned.time_s = Clock::System().NowSeconds();
+      turned.eye_ecef += std::sin(gone_s) * views[i].ecef_from_camera[0];
+      channels[i]->parameters.Publish(turned);
+    }
+    Sleep(0.01);
+    gone_s = Clock::System().NowSeconds() - start_s;
+  }
+  double pixels = 0;
+  for (const FrameSample& sample : station.render().TakeSamples()) {
+    for (const ViewParameters& view : views)
+      pixels += sample.view == view.view ? 1.0 * view.width_px * view.height_px : 0;
+  }
+  for (const ViewParameters& view : views) station.RemoveView(view.view);
+  return pixels / gone_s;
+}
+
+int Places(const std::string& dataset, double seconds) {
+  auto station = StartStation(dataset, 2048 * kMiB, false, 0, 2048);
+  const std::vector<Geodetic> places{kOverTheSierra, {38.0, -119.5, 6500}, {37.6, -118.9, 6000}, {36.9, -118.3, 7000}};
+  std::vector<ViewParameters> views;
+  double one = 0;
+  for (size_t i = 0; i < places.size(); ++i) {
+    views.push_back(ViewFrom(*station, static_cast<ViewId>(i + 1), places[i], 330, -12));
+    one += PixelsPerSecond(*station, {views.back()}, seconds) / static_cast<double>(places.size());
+  }
+  const double four = PixelsPerSecond(*station, views, seconds);
+  fmt::print("one view {:.1f} megapixels/s (mean of the four places), four views {:.1f}: ratio {:.3f} (limit 0.9)\n",
+             one / 1e6, four / 1e6, four / one);
+  return four / one >= 0.9 ? 0 : 1;
+}
+
+int Poles(const std::string& dataset) {
+  auto station = StartStation(dataset, 1024 * kMiB, false);
+  ViewParameters view = ViewFrom(*station, 1, {0, 0, 1e7}, 0, -90);
+  view.error_px = 1;
+  ViewChannel& channel = station->AddView(view, nullptr);
+  double worst = 0;
+  for (const double height_m : {3e3, 3e4, 3e5, 3e6}) {
+    const auto mean_at = [&](const std::vector<double>& latitudes_deg) {
+      std::pair<double, double> sum{0, 0};
+      int poses = 0;
+      for (const double latitude_deg : latitudes_deg) {
+        for (const double longitude_deg : {-150.0, -100.0, -25.0, 5.0, 60.0, 85.0, 160.0}) {
+          const uint64_t number = view.number;
+          view = ViewFrom(*station, 1, {latitude_deg, longitude_deg, height_m}, longitude_deg, -35);
+          view.error_px = 1;
+          view.number = number + 1;
+          channel.parameters.Publish(view);
+          if (!Settle(*station, 1, 60)) Give("a view has not settled in 60 s");
+          const auto picture = station->render().Capture(1, Renderer::Moment::kOfParameters).get();
+          sum.first += picture->nodes;
+          sum.second += picture->triangles;
+          ++poses;
+        }
+      }
+      return std::pair{sum.first / poses, sum.second / poses};
+    };
+    const auto [pole_nodes, pole_triangles] = mean_at({-89.99, 89.99});
+    const auto [nodes, triangles] = mean_at({-0.3, 0.3});
+    fmt::print(
+        "{:8.0f} m: at the poles {:.0f} quadnodes, {:.0f} triangles; at the equator {:.0f}, {:.0f}; ratios {:.2f}, "
+        "{:.2f}\n",
+        height_m, pole_nodes, pole_triangles, nodes, triangles, pole_nodes / nodes, pole_triangles / triangles);
+    std::fflush(stdout);
+    worst = std::max({worst, pole_nodes / nodes, pole_triangles / triangles});
+  }
+  fmt::print("largest ratio {:.2f} (limit 1.5)\n", worst);
+  return worst < 1.5 ? 0 : 1;
 }
 
 void AddThreeViews(Station& station) {
@@ -277,11 +370,15 @@ int Run(const std::vector<std::string>& words) {
     return words.size() > index ? std::atof(words[index].c_str()) : otherwise;
   };
   if (words.size() >= 2 && words[0] == "views") return Views(words[1]);
+  if (words.size() >= 2 && words[0] == "places") return Places(words[1], number(2, 6));
+  if (words.size() >= 2 && words[0] == "poles") return Poles(words[1]);
   if (words.size() >= 2 && words[0] == "feed") return Feed(words[1], number(2, 30));
   if (words.size() >= 3 && words[0] == "malformed") return Malformed(words[1], words[2]);
   if (words.size() >= 2 && words[0] == "jump") return Jump(words[1], static_cast<int>(number(2, 20)));
   if (words.size() >= 2 && words[0] == "soak") return Soak(words[1], number(2, 20));
-  fmt::print(stderr, "usage: station_figures views|feed|malformed|jump|soak DATASET [SECONDS|FOLDER|JUMPS|MINUTES]\n");
+  fmt::print(
+      stderr,
+      "usage: station_figures views|places|poles|feed|malformed|jump|soak DATASET [SECONDS|FOLDER|JUMPS|MINUTES]\n");
   return 2;
 }
 

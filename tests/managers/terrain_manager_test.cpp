@@ -13,6 +13,8 @@ constexpr DataType kTerrain = 0;
 
 // Lists of a running manager, as the render thread would fetch them; every page it wishes for is made at once, and
 // every upload is placed.
+constexpr int kSlots = 640;
+
 class TerrainManagerTest : public testing::Test {
  protected:
   TerrainManagerTest() {
@@ -55,7 +57,7 @@ class TerrainManagerTest : public testing::Test {
 };
 
 TEST_F(TerrainManagerTest, GoesFromNothingToASettledCut) {
-  TerrainManager manager(1, paging_, channel_, Clock::System());
+  TerrainManager manager(1, paging_, channel_, kSlots, Clock::System());
   uint32_t nodes = 0;
   while (true) {
     const DisplayList& list = NextList();
@@ -74,8 +76,18 @@ TEST_F(TerrainManagerTest, GoesFromNothingToASettledCut) {
   EXPECT_NEAR(list.statistics.height_above_ground_m, 3e6, 10);
 }
 
+// Otherwise it would wish for pages that never find a place, and never come to rest.
+TEST_F(TerrainManagerTest, ACutHasRoomInTheSlotsOfTheGpu) {
+  TerrainManager manager(1, paging_, channel_, 64, Clock::System());
+  while (!NextList().statistics.settled) Serve(channel_->terrain_lists.front());
+  EXPECT_LE(channel_->terrain_lists.front().statistics.nodes, 42U);
+  EXPECT_GT(channel_->terrain_lists.front().statistics.nodes, 32U);
+  EXPECT_LE(next_slot_, 64);
+  EXPECT_TRUE(channel_->terrain_lists.front().statistics.behind);
+}
+
 TEST_F(TerrainManagerTest, ANewViewGivesANewList) {
-  TerrainManager manager(1, paging_, channel_, Clock::System());
+  TerrainManager manager(1, paging_, channel_, kSlots, Clock::System());
   while (!NextList().statistics.settled) Serve(channel_->terrain_lists.front());
   view_.number = 2;
   view_.eye_ecef = ToEcef({20, 30, 2e6});
@@ -88,7 +100,7 @@ TEST_F(TerrainManagerTest, ANewViewGivesANewList) {
 
 TEST_F(TerrainManagerTest, WithdrawsItsWishesWhenItEnds) {
   {
-    TerrainManager manager(1, paging_, channel_, Clock::System());
+    TerrainManager manager(1, paging_, channel_, kSlots, Clock::System());
     NextList();
   }
   EXPECT_EQ(paging_.queue(kTerrain).Stats().waiting, 0U);
