@@ -20,7 +20,6 @@ namespace {
 
 constexpr double kHudRefresh_s = 0.25;
 constexpr double kLongestUnchanged_s = 1.0;  // the sun goes on, and a window may have been uncovered
-
 constexpr double kLeastOverGround_m = 1.0;
 
 // Where the list draws its ground over the eye, since pages have not come, the picture is taken from just above that.
