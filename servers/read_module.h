@@ -13,6 +13,7 @@
 //   registry.Add({.layer = "slope",
 //                 .kind = PageKind::kOverlay,
 //                 .max_level = elevation->max_level,
+//                 .role = LayerRole::kMultiply,
 //                 .exists = elevation->exists,
 //                 .read = [type = elevation->type](ReadContext& context, Quadcode node) {
 //                   return ReadSlopeTint(context, type, node);
@@ -60,6 +61,7 @@ struct ReadModule {
   std::string layer;  // its name in the layer table
   PageKind kind = PageKind::kElevation;
   int max_level = 0;
+  LayerRole role = LayerRole::kColour;  // of an image layer
   // Whether there is a page; the four children of a quadnode exist together or not at all.
   std::function<bool(Quadcode)> exists;
   std::function<Result<std::unique_ptr<Page>>(ReadContext&, Quadcode)> read;

@@ -139,6 +139,7 @@ ReadModule ReliefModule(const ReadModule& elevation) {
   ReadModule module;
   module.layer = kReliefLayer;
   module.kind = PageKind::kOverlay;
+  module.role = LayerRole::kMultiply;
   module.max_level = elevation.max_level;
   module.exists = elevation.exists;
   std::shared_ptr<const Geoid> sea;  // without it, the sea is that of the ellipsoid: relief hardly differs

@@ -20,9 +20,18 @@ namespace belvedere {
 enum class PageKind : uint8_t {
   kElevation,  // ElevationPage
   kTerrain,    // TerrainPage
-  kColour,     // ImagePage, RGBA: the ground's colour
-  kOverlay,    // ImagePage, R: multiplies the colour (0.5 leaves it as it is)
+  kColour,     // ImagePage, RGBA
+  kOverlay,    // ImagePage, R
   kModel,      // ModelPage
+};
+
+// What an image layer does to the ground's colour under it.
+enum class LayerRole : uint8_t {
+  kColour,    // lies over it, as its alpha says
+  kGrey,      // likewise, without its hue
+  kMultiply,  // multiplies it: 0.5 leaves it as it is, 1 doubles it
+  kNight,     // shines where the sun is down
+  kWater,     // where it is 1 the sun glints
 };
 
 struct Layer {
@@ -32,6 +41,7 @@ struct Layer {
   int max_level = 0;
   // Whether the layer has a page for the quadnode.
   std::function<bool(Quadcode)> exists;
+  LayerRole role = LayerRole::kColour;  // of an image layer, unless a view says otherwise
 };
 
 class LayerTable {
