@@ -5,7 +5,7 @@
 // their corner agree on it along the meridian and along the parallel, since the finest of them always has it in a
 // corner.
 //
-// Units: positions in grid units (quadcode.h); vertices as absolute numbers (display_list.h).
+// Units: positions in grid units (quadcode.h); vertices as numbered in the list (display_list.h).
 // Threads: one.
 #pragma once
 
@@ -36,6 +36,9 @@ class BorderLines {
 
   // Canonical vertices along that border of the quadnode, corners included, from its south or west end.
   std::span<const BorderVertex> Along(Quadcode node, Border border) const;
+
+  // All canonical vertices; those on 180 E may be there twice.
+  std::span<const BorderVertex> vertices() const { return vertices_; }
 
   static uint64_t PositionOf(Quadcode node, Border border, int post);
 

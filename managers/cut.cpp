@@ -91,8 +91,8 @@ class Selection {
   Cut Run() {
     for (int tree = 0; tree < kTrees; ++tree) {
       const Quadcode node = Quadcode::Root(tree);
-      if (const std::optional<int> slot = Drawable(node)) {
-        Add(node, *slot);
+      if (pages_.Terrain(node) != nullptr) {
+        Add(node);
       } else {
         cut_.waiting |= pages_.Want({terrain_, node}, kRootPriority);
         cut_.behind = true;
@@ -120,7 +120,6 @@ class Selection {
   struct Branch {
     Quadcode node;
     const TerrainPage* page = nullptr;
-    int slot = 0;
     Measure measure;
     double geometry_ratio = 0;  // what is left with all posts drawn, over the bound
     double ratio = 0;           // the greater of that and of texels
@@ -133,17 +132,11 @@ class Selection {
     bool operator<(const Coarse& other) const { return ratio < other.ratio; }
   };
 
-  std::optional<int> Drawable(Quadcode node) {
-    if (pages_.Terrain(node) == nullptr) return std::nullopt;
-    return pages_.Slot({terrain_, node});
-  }
-
-  // REQUIRES: Drawable(node) == slot
-  void Add(Quadcode node, int slot) {
+  // REQUIRES: its terrain page is in memory.
+  void Add(Quadcode node) {
     Branch branch;
     branch.node = node;
     branch.page = pages_.Terrain(node);
-    branch.slot = slot;
     branch.measure = MeasureOf(*branch.page);
     branch.geometry_ratio =
         branch.page->error_m * branch.measure.error_metre_px * branch.measure.share / view_.error_px;
@@ -162,14 +155,10 @@ class Selection {
   // Takes the children instead of the quadnode, if they all can be drawn.
   void Refine(size_t index) {
     const Branch parent = branches_[index];
-    std::array<int, 4> slots{};
     bool all = true, any_coming = false;
     for (int which = 0; which < 4; ++which) {
       const Quadcode child = parent.node.Child(which);
-      if (const std::optional<int> slot = Drawable(child)) {
-        slots[static_cast<size_t>(which)] = *slot;
-        continue;
-      }
+      if (pages_.Terrain(child) != nullptr) continue;
       const bool coming = pages_.Want({terrain_, child}, std::min(static_cast<float>(parent.ratio), kGreatestPriority));
       cut_.waiting |= coming;
       cut_.behind |= parent.measure.share >= 1.0 && coming;
@@ -180,7 +169,7 @@ class Selection {
     if (!all) return;
     branches_[index].first_child = branches_.size();
     --drawn_;
-    for (int which = 0; which < 4; ++which) Add(parent.node.Child(which), slots[static_cast<size_t>(which)]);
+    for (int which = 0; which < 4; ++which) Add(parent.node.Child(which));
   }
 
   // Front to back, nested.
@@ -208,7 +197,6 @@ class Selection {
     CutNode drawn;
     drawn.node = branch.node;
     drawn.page = branch.page;
-    drawn.slot = branch.slot;
     drawn.error_scale = measure.error_scale * measure.share;
     drawn.nearest_depth_m = measure.nearest_depth_m;
     drawn.finest = branch.geometry_ratio <= 1.0;

@@ -4,7 +4,7 @@
 // A quadnode is replaced by its four children when either is true within the view:
 //   geometry: what is left with every post of its page drawn, error_m, is more than error_px pixels;
 //   texture:  a texel of its own image would span more than texel_px pixels, and the layer has finer pages there;
-// and all four children can be drawn: their terrain pages are on the GPU. Until then the quadnode itself is drawn and
+// and all four children can be drawn: their terrain pages are in memory. Until then the quadnode itself is drawn and
 // the children are asked for. So a cut always covers the whole Earth, exactly once. The worst quadnode is replaced
 // first: where CutLimits end it, what is left over is the least that can be.
 //
@@ -34,9 +34,9 @@ class PageAccess {
   virtual ~PageAccess() = default;
   // nullptr when it is not in memory.
   virtual const TerrainPage* Terrain(Quadcode node) = 0;
-  // The page's slot on the GPU; nullopt when it is not there.
+  // The image page's slot on the GPU; nullopt when it is not there.
   virtual std::optional<int> Slot(const PageKey& key) = 0;
-  // The page should come, to memory and to the GPU. False when it never will (it failed).
+  // The page should come, to memory and, an image, to the GPU. False when it never will (it failed).
   virtual bool Want(const PageKey& key, float priority) = 0;
 };
 
@@ -52,7 +52,6 @@ Sight SightOf(const ViewParameters& view, const glm::dvec3& eye_ecef);
 struct CutNode {
   Quadcode node;
   const TerrainPage* page = nullptr;
-  int slot = 0;
   std::array<ImageUse, kMaxImageLayers> images{};
   // Screen-space error of e metres at depth z: perspective e * error_scale / z, orthographic e * error_scale.
   double error_scale = 0;

@@ -2,9 +2,24 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
 #include <limits>
 
 namespace belvedere {
+namespace {
+
+constexpr uint16_t kNoVertex = 0xFFFF;
+
+constexpr bool IsBorderPost(int post) {
+  const int column = post % kPosts;
+  return column == 0 || column == kCells || post < kPosts || post >= kCells * kPosts;
+}
+
+}  // namespace
+
+KeptTriangles::KeptTriangles() {
+  vertex_of_post_.fill(kNoVertex);
+}
 
 // By how much errors on the screen may have grown since the choice; infinite where the choice is of something else.
 double KeptTriangles::GrowthOfError(const Kept& kept, const CutNode& node, const Sight& sight) {
@@ -23,6 +38,52 @@ double KeptTriangles::GrowthOfError(const Kept& kept, const CutNode& node, const
   return growth * kept.nearest_depth_m / (kept.nearest_depth_m - nearer_m);
 }
 
+void KeptTriangles::Choose(Kept& kept, const CutNode& node, const Sight& sight, const Frame& frame, double error_px) {
+  ++chosen_;
+  drawn_before_.clear();
+  if (kept.page == node.page) {
+    for (const ListVertex& vertex : kept.mesh.vertices) drawn_before_.push_back(static_cast<uint16_t>(vertex.post()));
+  }
+  kept.page = node.page;
+  kept.sight = sight;
+  kept.error_scale = node.error_scale;
+  kept.nearest_depth_m = node.nearest_depth_m;
+  kept.error_px = error_px;
+  kept.finest = node.finest;
+  triangles_.clear();
+  const double tighter_px = error_px / (1.0 + kKeepMargin);
+  const auto leave_out_at = static_cast<float>(std::clamp(1.0 / error_px, 0.5, 1.0));
+  kept.worst =
+      static_cast<double>(posts_.Run(node, sight, frame, tighter_px, drawn_before_, leave_out_at, triangles_)) /
+      (1.0 + kKeepMargin);
+  FillMesh(*node.page, kept.mesh);
+}
+
+void KeptTriangles::FillMesh(const TerrainPage& page, KeptMesh& mesh) {
+  mesh.vertices.clear();
+  mesh.inner.clear();
+  mesh.at_border.clear();
+  mesh.border_vertices.clear();
+  bool on_border = false;
+  const auto vertex_of = [&](uint16_t post) {
+    const bool border = IsBorderPost(post);
+    on_border |= border;
+    uint16_t& vertex = vertex_of_post_[post];
+    if (vertex != kNoVertex) return vertex;
+    vertex = static_cast<uint16_t>(mesh.vertices.size());
+    const TerrainVertex& of_page = page.vertices[post];
+    mesh.vertices.push_back({of_page.x, of_page.y, of_page.z, of_page.normal, post, 0.0F});
+    if (border) mesh.border_vertices.push_back(vertex);
+    return vertex;
+  };
+  for (const PostTriangle& posts : triangles_) {
+    on_border = false;
+    const KeptMesh::Triangle triangle{vertex_of(posts.a), vertex_of(posts.b), vertex_of(posts.c)};
+    (on_border ? mesh.at_border : mesh.inner).push_back(triangle);
+  }
+  for (const ListVertex& vertex : mesh.vertices) vertex_of_post_[vertex.post()] = kNoVertex;
+}
+
 KeptTriangles::Choice KeptTriangles::For(const CutNode& node, const Sight& sight, const Frame& frame, double error_px) {
   Kept& kept = kept_[node.node];
   const double growth = kept.page == nullptr ? std::numeric_limits<double>::infinity()
@@ -30,20 +91,8 @@ KeptTriangles::Choice KeptTriangles::For(const CutNode& node, const Sight& sight
   // Growth is at least 1 for an eye that moves; where errors shrink by more than the margin, fewer triangles would do.
   const bool holds = growth <= 1.0 + kKeepMargin && growth >= 1.0 - kKeepMargin;
   kept.list = list_;
-  if (!holds) {
-    ++chosen_;
-    kept.page = node.page;
-    kept.sight = sight;
-    kept.error_scale = node.error_scale;
-    kept.nearest_depth_m = node.nearest_depth_m;
-    kept.error_px = error_px;
-    kept.finest = node.finest;
-    kept.triangles.clear();
-    kept.worst = static_cast<double>(posts_.Run(node, sight, frame, error_px / (1.0 + kKeepMargin), kept.triangles)) /
-                 (1.0 + kKeepMargin);
-    return {kept.triangles, kept.worst};
-  }
-  return {kept.triangles, kept.worst * growth};
+  if (!holds) Choose(kept, node, sight, frame, error_px);
+  return {&kept.mesh, holds ? kept.worst * growth : kept.worst, !holds};
 }
 
 void KeptTriangles::ForgetUnused() {

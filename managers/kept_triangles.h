@@ -6,12 +6,16 @@
 //     z - |eye moved| - |line of view turned| * (farthest distance of the quadnode),
 // and z is at least the quadnode's nearest depth then.
 //
+// A post that was drawn is left out again only when its error is half the bound, or a pixel where the bound is less
+// than two: so what is left out moves the surface by less than a pixel.
+//
 // Units: metres, pixels, ECEF. Threads: one an object.
 #pragma once
 
 #include "managers/post_selection.h"
+#include "runtime/scene/display_list.h"
 
-#include <span>
+#include <array>
 #include <unordered_map>
 #include <vector>
 
@@ -19,11 +23,27 @@ namespace belvedere {
 
 inline constexpr double kKeepMargin = 0.02;
 
+// The triangles of one quadnode, between the vertices of the posts that they use.
+struct KeptMesh {
+  struct Triangle {
+    uint16_t a, b, c;  // indices of vertices
+  };
+  std::vector<ListVertex> vertices;  // place: the post alone
+  std::vector<Triangle> inner;       // with no post on the quadnode's border
+  std::vector<Triangle> at_border;
+  std::vector<uint16_t> border_vertices;
+  // Rises of the vertices are of rises_from_s and gone at rises_until_s, clock seconds; no later: none rises.
+  double rises_from_s = 0, rises_until_s = 0;
+};
+
 class KeptTriangles {
  public:
+  KeptTriangles();
+
   struct Choice {
-    std::span<const PostTriangle> triangles;  // valid until the next Forget
-    double worst = 0;                         // largest error left, in units of the bound
+    KeptMesh* mesh = nullptr;  // valid until the next ForgetUnused; its rises are the caller's to keep
+    double worst = 0;          // largest error left, in units of the bound
+    bool is_new = false;       // chosen for this list
   };
   // Chosen anew, or as they were chosen for an earlier list. frame: of the quadnode.
   // REQUIRES: the pages of the list before this one are still in memory.
@@ -42,13 +62,18 @@ class KeptTriangles {
     double nearest_depth_m = 0;
     double error_px = 0;
     bool finest = true;
-    std::vector<PostTriangle> triangles;
+    KeptMesh mesh;
     double worst = 0;  // in units of error_px, with the error_scale and from where it was chosen
     uint64_t list = 0;
   };
   static double GrowthOfError(const Kept& kept, const CutNode& node, const Sight& sight);
+  void Choose(Kept& kept, const CutNode& node, const Sight& sight, const Frame& frame, double error_px);
+  void FillMesh(const TerrainPage& page, KeptMesh& mesh);
 
   PostSelection posts_;
+  std::vector<PostTriangle> triangles_;  // as the posts were last chosen
+  std::vector<uint16_t> drawn_before_;
+  std::array<uint16_t, kVerticesPerPage> vertex_of_post_{};  // scratch, kNoVertex between uses
   std::unordered_map<Quadcode, Kept> kept_;
   uint64_t list_ = 0;
   uint64_t chosen_ = 0;

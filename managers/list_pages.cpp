@@ -12,7 +12,9 @@ ListPages::Known& ListPages::Look(const PageKey& key) {
   PagePin pin = paging_.cache.Find(key);
   if (!pin) return known;
   known.page = &pin.page();
-  if (const std::optional<int> slot = known.page->residency()->TryPin()) {
+  // The vertices of terrain go into the list itself.
+  const std::optional<int> slot = key.type == terrain_ ? std::nullopt : known.page->residency()->TryPin();
+  if (slot) {
     known.slot = *slot;
     list_.gpu_pins.push_back(known.page->residency().get());
   }

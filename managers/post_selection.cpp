@@ -50,9 +50,11 @@ struct PostSelection::LocalView {
 };
 
 float PostSelection::Run(const CutNode& node, const Sight& sight, const Frame& frame, double error_px,
-                         std::vector<PostTriangle>& out) {
+                         std::span<const uint16_t> drawn_before, float leave_out_at, std::vector<PostTriangle>& out) {
   const LocalView view(node, sight, frame, error_px);
   states_.fill(kUnseen);
+  stay_ = 1.0F / leave_out_at;
+  for (const uint16_t post : drawn_before) states_[post] = kDrawnBefore;
   for (const int corner : {kSouthWest, kSouthEast, kNorthWest, kNorthEast})
     states_[static_cast<size_t>(corner)] = kDrawn;
   worst_ = 0;
@@ -92,7 +94,8 @@ void PostSelection::Draw(Post post, const LocalView& view) {
 
 void PostSelection::Test(Post post, int level, const LocalView& view) {
   const auto index = static_cast<size_t>(post.index());
-  if (states_[index] != kUnseen) return;
+  const State state = states_[index];
+  if (state == kDrawn || state == kLeftOut) return;
   const float delta_m = view.page.deltas[index];
   // Whoever jumps to the other side of the world finds it round, also in the list that was made before the jump.
   if (delta_m > kAlwaysDrawn_m) return Draw(post, view);
@@ -100,8 +103,9 @@ void PostSelection::Test(Post post, int level, const LocalView& view) {
   const float error = std::max(0.0F, delta_m - view.left_over_m) * view.scale;
   // Most posts are done with before their place is looked up in memory.
   float least_depth_m = view.perspective ? view.nearest_depth_m : 1.0F;
-  if (error > least_depth_m && view.perspective) least_depth_m = view.LeastDepth(post.index(), level);
-  if (error > std::max(least_depth_m, kLeastDepth_m)) return Draw(post, view);
+  const float asked = state == kDrawnBefore ? error * stay_ : error;
+  if (asked > least_depth_m && view.perspective) least_depth_m = view.LeastDepth(post.index(), level);
+  if (asked > std::max(least_depth_m, kLeastDepth_m)) return Draw(post, view);
   states_[index] = kLeftOut;
   worst_ = std::max(worst_, error / std::max(least_depth_m, kLeastDepth_m));
 }

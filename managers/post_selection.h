@@ -16,6 +16,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace belvedere {
@@ -27,13 +28,14 @@ struct PostTriangle {
 class PostSelection {
  public:
   // Appends the quadnode's triangles to `out`. Returns the largest error that they may leave, in units of the bound.
-  // frame: of the quadnode.
+  // frame: of the quadnode. Of posts that were drawn_before, those are left out whose error is under leave_out_at, in
+  // units of the bound, 0 .. 1.
   float Run(const CutNode& node, const Sight& sight, const Frame& frame, double error_px,
-            std::vector<PostTriangle>& out);
+            std::span<const uint16_t> drawn_before, float leave_out_at, std::vector<PostTriangle>& out);
 
  private:
   struct LocalView;
-  enum State : uint8_t { kUnseen, kLeftOut, kDrawn };
+  enum State : uint8_t { kUnseen, kDrawnBefore, kLeftOut, kDrawn };
 
   void Draw(Post post, const LocalView& view);
   void Test(Post post, int level, const LocalView& view);
@@ -42,6 +44,7 @@ class PostSelection {
   std::array<State, kVerticesPerPage> states_{};
   std::vector<uint16_t> drawn_;  // posts but for the corners
   float worst_ = 0;
+  float stay_ = 1;  // by how much the errors of posts that were drawn before count for more
 };
 
 }  // namespace belvedere

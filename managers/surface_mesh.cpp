@@ -5,7 +5,6 @@
 #include "runtime/base/status.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <optional>
 
@@ -61,19 +60,25 @@ std::optional<Border> SharedBorder(int a, int b) {
   return std::nullopt;
 }
 
+// The vertex of each pole.
+struct Poles {
+  uint32_t north = 0, south = 0;
+};
+
 // Joins the triangles of one quadnode to its neighbours' along its borders, and appends them as absolute vertices.
 class Joiner {
  public:
-  Joiner(const CutNode& node, const BorderLines& lines, uint32_t north_pole, uint32_t south_pole,
+  // first_vertex: of the quadnode's own in the list.
+  Joiner(const CutNode& node, const KeptMesh& mesh, uint32_t first_vertex, const BorderLines& lines, const Poles& poles,
          std::vector<uint32_t>& out)
-      : first_(static_cast<uint32_t>(node.slot) * kVerticesPerPage), out_(out) {
+      : mesh_(mesh), first_(first_vertex), out_(out) {
     for (const Border border : kBorders) {
       Side& side = sides_[static_cast<size_t>(border)];
       const bool polar =
           (border == Border::kNorth && node.node.SouthWest().y + node.node.GridSize() == kGridNorthPole) ||
           (border == Border::kSouth && node.node.SouthWest().y == 0);
       if (polar) {
-        side.pole = border == Border::kNorth ? north_pole : south_pole;
+        side.pole = border == Border::kNorth ? poles.north : poles.south;
         continue;
       }
       side.vertices = lines.Along(node.node, border);
@@ -82,18 +87,20 @@ class Joiner {
     }
   }
 
-  void Append(const PostTriangle& triangle) {
-    const std::array<int, 3> posts{triangle.a, triangle.b, triangle.c};
-    std::array<uint32_t, 3> vertices;
-    bool on_border = false;
-    for (size_t i = 0; i < 3; ++i) {
-      vertices[i] = Canonical(posts[i], on_border);
+  void Append() {
+    for (const KeptMesh::Triangle& triangle : mesh_.inner) {
+      Emit(first_ + triangle.a, first_ + triangle.b, first_ + triangle.c);
     }
-    if (!on_border) {
-      out_.insert(out_.end(), vertices.begin(), vertices.end());
-      return;
+    for (const KeptMesh::Triangle& triangle : mesh_.at_border) {
+      const std::array<uint16_t, 3> corners{triangle.a, triangle.b, triangle.c};
+      std::array<int, 3> posts;
+      std::array<uint32_t, 3> vertices;
+      for (size_t i = 0; i < 3; ++i) {
+        posts[i] = static_cast<int>(mesh_.vertices[corners[i]].post());
+        vertices[i] = Canonical(posts[i], corners[i]);
+      }
+      AppendAtBorder(posts, vertices);
     }
-    AppendAtBorder(posts, vertices);
   }
 
  private:
@@ -110,10 +117,9 @@ class Joiner {
                               [](const BorderVertex& v, uint64_t p) { return v.position < p; });
   }
 
-  uint32_t Canonical(int post, bool& on_border) const {
+  uint32_t Canonical(int post, uint16_t own) const {
     const unsigned bits = border_bits_[static_cast<size_t>(post)];
-    if (bits == 0) return first_ + static_cast<uint32_t>(post);
-    on_border = true;
+    if (bits == 0) return first_ + own;
     std::optional<uint32_t> found;
     for (const Border border : kBorders) {
       if ((bits & (1U << static_cast<unsigned>(border))) == 0) continue;
@@ -197,13 +203,14 @@ class Joiner {
   }
 
   const std::array<uint8_t, kVerticesPerPage>& border_bits_ = BorderBits();
+  const KeptMesh& mesh_;
   const uint32_t first_;
   std::vector<uint32_t>& out_;
   std::array<Side, 4> sides_;
   std::array<std::vector<uint32_t>, 3> edges_;
 };
 
-// Place of each node, finest first and then by quadcode.
+// The nodes, finest first and then by quadcode.
 std::vector<uint32_t> RankNodes(std::span<const CutNode> nodes) {
   std::vector<uint32_t> order(nodes.size());
   std::iota(order.begin(), order.end(), 0U);
@@ -212,47 +219,18 @@ std::vector<uint32_t> RankNodes(std::span<const CutNode> nodes) {
     const int level_b = nodes[b].node.level();
     return level_a != level_b ? level_a > level_b : nodes[a].node < nodes[b].node;
   });
-  std::vector<uint32_t> rank(nodes.size());
-  for (uint32_t place = 0; place < order.size(); ++place) rank[order[place]] = place;
-  return rank;
+  return order;
 }
 
-// Adds the posts of one quadnode's triangles that lie on its borders.
-void AddBorderPosts(const CutNode& node, std::span<const PostTriangle> triangles, uint32_t rank, BorderLines& lines) {
-  std::array<std::array<bool, kPosts>, 4> seen{};
-  const auto& border_bits = BorderBits();
-  const auto add = [&](int post) {
-    if (border_bits[static_cast<size_t>(post)] == 0) return;
+// Adds the drawn posts of one quadnode that lie on its borders.
+void AddBorderPosts(const CutNode& node, const KeptMesh& mesh, uint32_t first_vertex, uint32_t rank,
+                    BorderLines& lines) {
+  for (const uint16_t own : mesh.border_vertices) {
+    const auto post = static_cast<int>(mesh.vertices[own].post());
     for (const Border border : kBorders) {
-      if (!OnBorder(post, border)) continue;
-      const int along = AlongBorder(post, border);
-      bool& here = seen[static_cast<size_t>(border)][static_cast<size_t>(along)];
-      if (here) continue;
-      here = true;
-      const uint32_t vertex = static_cast<uint32_t>(node.slot) * kVerticesPerPage + static_cast<uint32_t>(post);
-      lines.Add(node.node, border, along, vertex, rank);
+      if (OnBorder(post, border)) lines.Add(node.node, border, AlongBorder(post, border), first_vertex + own, rank);
     }
-  };
-  for (const PostTriangle& triangle : triangles) {
-    add(triangle.a);
-    add(triangle.b);
-    add(triangle.c);
   }
-}
-
-// The one vertex of a pole: that of the best-ranked quadnode that touches it.
-uint32_t PoleVertex(std::span<const CutNode> nodes, std::span<const uint32_t> rank, bool north) {
-  uint32_t best_rank = std::numeric_limits<uint32_t>::max();
-  uint32_t vertex = 0;
-  for (size_t i = 0; i < nodes.size(); ++i) {
-    const uint32_t south = nodes[i].node.SouthWest().y;
-    const bool touches = north ? south + nodes[i].node.GridSize() == kGridNorthPole : south == 0;
-    if (!touches || rank[i] >= best_rank) continue;
-    best_rank = rank[i];
-    const int post = north ? PostOnBorder(Border::kNorth, 0) : PostOnBorder(Border::kSouth, 0);
-    vertex = static_cast<uint32_t>(nodes[i].slot) * kVerticesPerPage + static_cast<uint32_t>(post);
-  }
-  return vertex;
 }
 
 uint32_t FrameIndex(Quadcode node, std::vector<Frame>& frames) {
@@ -263,38 +241,119 @@ uint32_t FrameIndex(Quadcode node, std::vector<Frame>& frames) {
   return static_cast<uint32_t>(frames.size() - 1);
 }
 
+// One list in the making.
+class Surface {
+ public:
+  Surface(std::span<const CutNode> nodes, SurfaceState& state, DisplayList& list)
+      : nodes_(nodes), state_(state), list_(list), ranked_(RankNodes(nodes)), rank_(nodes.size()) {
+    for (uint32_t place = 0; place < ranked_.size(); ++place) rank_[ranked_[place]] = place;
+  }
+
+  MeshStatistics Build(const Sight& sight, double error_px) {
+    Choose(sight, error_px);
+    Share();
+    AppendVertices();
+    AppendTriangles();
+    state_.morph.Remember(list_, ranked_, first_vertex_);
+    state_.kept.ForgetUnused();
+    return statistics_;
+  }
+
+ private:
+  void Choose(const Sight& sight, double error_px) {
+    uint32_t vertices = 0;
+    for (const CutNode& node : nodes_) {
+      const uint32_t frame = FrameIndex(node.node, list_.frames);
+      const KeptTriangles::Choice choice = state_.kept.For(node, sight, list_.frames[frame], error_px);
+      if (node.visible)
+        statistics_.achieved_error_px = std::max(statistics_.achieved_error_px, choice.worst * error_px);
+      state_.morph.Place(node, list_.frames[frame], choice.is_new, *choice.mesh);
+      chosen_.push_back({choice.mesh, frame, choice.is_new});
+      first_vertex_.push_back(vertices);
+      vertices += static_cast<uint32_t>(choice.mesh->vertices.size());
+    }
+  }
+
+  // Settles which vertex is drawn where quadnodes meet.
+  void Share() {
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+      AddBorderPosts(nodes_[i], *chosen_[i].mesh, first_vertex_[i], rank_[i], lines_);
+    }
+    lines_.Seal();
+    poles_ = {PoleVertex(true), PoleVertex(false)};
+    for (const BorderVertex& shared : lines_.vertices()) {
+      const uint32_t owner = ranked_[shared.rank];
+      const Chosen& chosen = chosen_[owner];
+      if (chosen.is_new) continue;  // placed already
+      state_.morph.PlaceShared(nodes_[owner], list_.frames[chosen.frame],
+                               static_cast<uint16_t>(shared.vertex - first_vertex_[owner]), *chosen.mesh);
+    }
+  }
+
+  // That of the best-ranked quadnode that touches the pole.
+  uint32_t PoleVertex(bool north) const {
+    for (const uint32_t i : ranked_) {
+      const uint32_t south = nodes_[i].node.SouthWest().y;
+      const bool touches = north ? south + nodes_[i].node.GridSize() == kGridNorthPole : south == 0;
+      if (!touches) continue;
+      const auto post = static_cast<uint32_t>(PostOnBorder(north ? Border::kNorth : Border::kSouth, 0));
+      const std::vector<ListVertex>& vertices = chosen_[i].mesh->vertices;  // corners are always drawn
+      const auto found =
+          std::find_if(vertices.begin(), vertices.end(), [&](const ListVertex& v) { return v.post() == post; });
+      return first_vertex_[i] + static_cast<uint32_t>(found - vertices.begin());
+    }
+    return 0;
+  }
+
+  void AppendVertices() {
+    for (uint32_t i = 0; i < nodes_.size(); ++i) {
+      const KeptMesh& mesh = *chosen_[i].mesh;
+      for (const ListVertex& vertex : mesh.vertices) {
+        list_.vertices.push_back(vertex);
+        list_.vertices.back().place = ListVertex::PlaceOf(i, vertex.post());
+      }
+      statistics_.rises_until_s = std::max(statistics_.rises_until_s, mesh.rises_until_s);
+    }
+  }
+
+  void AppendTriangles() {
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+      const KeptMesh& mesh = *chosen_[i].mesh;
+      TerrainDraw draw;
+      draw.node = nodes_[i].node;
+      draw.frame = chosen_[i].frame;
+      draw.rise_s = static_cast<float>(mesh.rises_until_s - mesh.rises_from_s);
+      draw.first_index = static_cast<uint32_t>(list_.indices.size());
+      draw.images = nodes_[i].images;
+      Joiner(nodes_[i], mesh, first_vertex_[i], lines_, poles_, list_.indices).Append();
+      draw.index_count = static_cast<uint32_t>(list_.indices.size()) - draw.first_index;
+      list_.terrain_draws.push_back(draw);
+      statistics_.triangles += draw.index_count / 3;
+    }
+  }
+
+  struct Chosen {
+    KeptMesh* mesh;
+    uint32_t frame;
+    bool is_new;
+  };
+  const std::span<const CutNode> nodes_;
+  SurfaceState& state_;
+  DisplayList& list_;
+  const std::vector<uint32_t> ranked_;  // nodes_, as shared vertices are taken from them
+  std::vector<uint32_t> rank_;          // of each of nodes_
+  std::vector<Chosen> chosen_;
+  std::vector<uint32_t> first_vertex_;  // in the list, of each of nodes_
+  BorderLines lines_;
+  Poles poles_;
+  MeshStatistics statistics_;
+};
+
 }  // namespace
 
-MeshStatistics BuildSurface(std::span<const CutNode> nodes, const Sight& sight, double error_px, KeptTriangles& kept,
+MeshStatistics BuildSurface(std::span<const CutNode> nodes, const Sight& sight, double error_px, SurfaceState& state,
                             DisplayList& list) {
-  MeshStatistics statistics;
-  std::vector<std::span<const PostTriangle>> triangles;
-  triangles.reserve(nodes.size());
-  const std::vector<uint32_t> rank = RankNodes(nodes);
-  BorderLines lines;
-  for (size_t i = 0; i < nodes.size(); ++i) {
-    const CutNode& node = nodes[i];
-    const uint32_t frame = FrameIndex(node.node, list.frames);
-    list.slots.push_back({node.page, node.slot, frame, node.node.SouthWest(), node.node.PostSpacing()});
-    const KeptTriangles::Choice choice = kept.For(node, sight, list.frames[frame], error_px);
-    if (node.visible) statistics.achieved_error_px = std::max(statistics.achieved_error_px, choice.worst * error_px);
-    AddBorderPosts(node, choice.triangles, rank[i], lines);
-    triangles.push_back(choice.triangles);
-  }
-  lines.Seal();
-
-  const uint32_t north_pole = PoleVertex(nodes, rank, true);
-  const uint32_t south_pole = PoleVertex(nodes, rank, false);
-  for (size_t i = 0; i < nodes.size(); ++i) {
-    const auto first_index = static_cast<uint32_t>(list.indices.size());
-    Joiner joiner(nodes[i], lines, north_pole, south_pole, list.indices);
-    for (const PostTriangle& triangle : triangles[i]) joiner.Append(triangle);
-    const auto count = static_cast<uint32_t>(list.indices.size()) - first_index;
-    list.terrain_draws.push_back({nodes[i].node, first_index, count, nodes[i].images});
-    statistics.triangles += count / 3;
-  }
-  kept.ForgetUnused();
-  return statistics;
+  return Surface(nodes, state, list).Build(sight, error_px);
 }
 
 }  // namespace belvedere

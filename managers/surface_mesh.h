@@ -1,6 +1,6 @@
 // Surface mesh: the second stage of terrain selection. Chooses posts within each quadnode of a cut by their delta
-// values (post_selection.h), or keeps what it chose before (kept_triangles.h), and joins all quadnodes into one
-// watertight surface.
+// values (post_selection.h), or keeps what it chose before (kept_triangles.h), joins all quadnodes into one watertight
+// surface, and lets it grow out of the surface before it (surface_morph.h).
 //
 // Between quadnodes, each side chooses for itself; then the line that they share is made the same for both. All posts
 // that lie on a border line and are drawn by any quadnode are gathered; each position gets one canonical vertex (that
@@ -13,6 +13,7 @@
 
 #include "managers/cut.h"
 #include "managers/kept_triangles.h"
+#include "managers/surface_morph.h"
 #include "runtime/scene/display_list.h"
 
 #include <glm/vec3.hpp>
@@ -23,12 +24,19 @@ namespace belvedere {
 
 struct MeshStatistics {
   uint32_t triangles = 0;
+  double rises_until_s = 0;      // see DisplayList::Statistics
   double achieved_error_px = 0;  // largest screen-space error that the visible quadnodes' triangles may leave
 };
 
-// Appends to list.indices, list.slots, list.frames and list.terrain_draws (one draw a cut node, in the same order).
-// kept: of the manager whose lists these are.
-MeshStatistics BuildSurface(std::span<const CutNode> nodes, const Sight& sight, double error_px, KeptTriangles& kept,
+// What goes on from list to list of one manager.
+struct SurfaceState {
+  KeptTriangles kept;
+  SurfaceMorph morph;
+};
+
+// Appends to list.vertices, list.indices, list.frames and list.terrain_draws (one draw a cut node, in the same order),
+// and says until when vertices are on their way. REQUIRES: state.morph has begun the list.
+MeshStatistics BuildSurface(std::span<const CutNode> nodes, const Sight& sight, double error_px, SurfaceState& state,
                             DisplayList& list);
 
 }  // namespace belvedere

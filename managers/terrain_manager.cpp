@@ -1,6 +1,7 @@
 #include "managers/terrain_manager.h"
 
 #include "managers/cut.h"
+#include "managers/eye_jump.h"
 #include "managers/held_bound.h"
 #include "managers/list_pages.h"
 #include "managers/paced_thread.h"
@@ -19,19 +20,16 @@ namespace {
 constexpr double kListsPerSecond = 34.0;
 constexpr double kPinnedShareOfBudget = 0.8;  // of the cache; over it, cuts stop growing
 constexpr double kRateSmoothing = 0.1;
-// A quadtree has a third as many quadnodes above its leaves; and a cut that moves needs room for what comes.
-constexpr double kCutShareOfSlots = 0.65;
 
 }  // namespace
 
 class TerrainManager::Worker {
  public:
-  Worker(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, int gpu_slots, const Clock& clock)
+  Worker(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, const Clock& clock)
       : view_id_(view),
         paging_(paging),
         channel_(std::move(channel)),
         clock_(clock),
-        most_nodes_(std::min(CutLimits{}.max_nodes, static_cast<int>(kCutShareOfSlots * gpu_slots))),
         terrain_(TerrainType(paging.layers)),
         thread_("terrain manager", kListsPerSecond, [this] { Step(); }) {}
 
@@ -78,13 +76,15 @@ class TerrainManager::Worker {
     held.error_px = bound_.Next(view, *channel_->frame.Get(), number_ + 1);
     list.statistics.held_error_px = held.error_px;
     ListPages pages(paging_, terrain_, list);
-    CutLimits limits{most_nodes_};
+    CutLimits limits;
     if (static_cast<double>(paging_.cache.PinnedBytes()) >
         kPinnedShareOfBudget * static_cast<double>(paging_.cache.budget_bytes())) {
       limits.max_nodes = std::min(limits.max_nodes, last_nodes_);
     }
     const Cut cut = SelectCut(held, matrices, paging_.layers, terrain_, limits, pages);
-    const MeshStatistics mesh = BuildSurface(cut.nodes, SightOf(view, matrices.eye_ecef), held.error_px, kept_, list);
+    surface_.morph.Begin(now_s, jump_.Next(view, now_s, list.statistics.height_above_ground_m, was_settled_));
+    const MeshStatistics mesh =
+        BuildSurface(cut.nodes, SightOf(view, matrices.eye_ecef), held.error_px, surface_, list);
     last_nodes_ = static_cast<int>(cut.nodes.size());
     list.records = cut.records;
     list.volumes = cut.volumes;
@@ -100,30 +100,30 @@ class TerrainManager::Worker {
     statistics.achieved_error_px = mesh.achieved_error_px + cut.left_over_error_px;
     statistics.pages_waiting = static_cast<uint32_t>(pages.pages_waiting());
     statistics.behind = cut.behind;
+    statistics.rises_until_s = mesh.rises_until_s;
     statistics.settled = !cut.waiting && pages.pages_waiting() == 0 && !cut.nodes.empty();
+    was_settled_ = statistics.settled;
   }
 
   const ViewId view_id_;
   Paging& paging_;
   const std::shared_ptr<ViewChannel> channel_;
   const Clock& clock_;
-  const int most_nodes_;
   const DataType terrain_;
   uint64_t number_ = 0;
   uint64_t settled_number_ = 0;
   int last_nodes_ = 0;
-  KeptTriangles kept_;
+  bool was_settled_ = false;
+  SurfaceState surface_;
+  EyeJump jump_;
   HeldBound bound_;
   double last_list_s_ = 0;
   std::atomic<double> scene_hz_{0};
   PacedThread thread_;  // last: it stops before the members above go
 };
 
-TerrainManager::TerrainManager(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, int gpu_slots,
-                               const Clock& clock)
-    : worker_(std::make_unique<Worker>(view, paging, std::move(channel), gpu_slots, clock)),
-      view_(view),
-      paging_(paging) {}
+TerrainManager::TerrainManager(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, const Clock& clock)
+    : worker_(std::make_unique<Worker>(view, paging, std::move(channel), clock)), view_(view), paging_(paging) {}
 
 TerrainManager::~TerrainManager() {
   worker_.reset();

@@ -18,9 +18,7 @@ namespace belvedere {
 
 class TerrainManager {
  public:
-  // gpu_slots: for terrain pages, of all views. A cut is kept so small that it and what it is refined from have room
-  // there: one that asks for more would wait for ever.
-  TerrainManager(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, int gpu_slots, const Clock& clock);
+  TerrainManager(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, const Clock& clock);
   ~TerrainManager();
   TerrainManager(const TerrainManager&) = delete;
   TerrainManager& operator=(const TerrainManager&) = delete;

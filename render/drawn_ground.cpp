@@ -14,41 +14,37 @@ constexpr double kSlack = 1e-9;  // of a triangle's share: places on an edge bel
 
 struct GridVertex {
   double east = 0, north = 0;  // grid units from the quadnode's south-west corner
-  const TerrainSlot* slot = nullptr;
-  uint32_t post = 0;
+  const ListVertex* vertex = nullptr;
 };
 
-// Vertices of one quadnode's triangles: almost all in its own slot, some at its borders in a neighbour's.
+// Vertices of one quadnode's triangles: almost all its own, some at its borders a neighbour's.
 class Vertices {
  public:
-  Vertices(const DisplayList& list, const TerrainSlot& own) : list_(list), own_(own) {}
+  Vertices(const DisplayList& list, const TerrainDraw& drawn, double since_list_s)
+      : list_(list), corner_(drawn.node.SouthWest()), since_list_s_(since_list_s) {}
 
   // east_at_pole: a pole is a point of every meridian.
   GridVertex At(uint32_t number, double east_at_pole) const {
-    const auto slot_number = static_cast<int32_t>(number / kVerticesPerPage);
-    GridVertex vertex;
-    vertex.slot = slot_number == own_.slot ? &own_ : Find(slot_number);
-    vertex.post = number % kVerticesPerPage;
-    const uint32_t x = vertex.slot->south_west.x + vertex.post % kPosts * vertex.slot->post_spacing;
-    const uint32_t y = vertex.slot->south_west.y + vertex.post / kPosts * vertex.slot->post_spacing;
+    const ListVertex& vertex = list_.vertices[number];
+    const Quadcode node = list_.terrain_draws[vertex.draw()].node;
+    const uint32_t x = node.SouthWest().x + vertex.post() % kPosts * node.PostSpacing();
+    const uint32_t y = node.SouthWest().y + vertex.post() / kPosts * node.PostSpacing();
     const bool pole = y == 0 || y == kGridNorthPole;
-    vertex.east = pole ? east_at_pole : static_cast<double>(x - own_.south_west.x);  // wraps at 180 E
-    vertex.north = static_cast<double>(y - own_.south_west.y);
-    return vertex;
+    return {pole ? east_at_pole : static_cast<double>(x - corner_.x),  // wraps at 180 E
+            static_cast<double>(y - corner_.y), &vertex};
   }
 
-  double HeightOf(const GridVertex& vertex) const {
-    const TerrainVertex& v = vertex.slot->page->vertices[vertex.post];
-    return ToGeodetic(list_.frames[vertex.slot->frame].ToEcef({v.x, v.y, v.z})).height_m;
+  double HeightOf(const GridVertex& grid_vertex) const {
+    const ListVertex& v = *grid_vertex.vertex;
+    const TerrainDraw& draw = list_.terrain_draws[v.draw()];
+    const double left = draw.rise_s > 0 ? std::clamp(1.0 - since_list_s_ / draw.rise_s, 0.0, 1.0) : 0.0;
+    return ToGeodetic(list_.frames[draw.frame].ToEcef({v.x, v.y, v.z})).height_m + left * v.rise_m;
   }
 
  private:
-  const TerrainSlot* Find(int32_t slot) const {
-    return &*std::find_if(list_.slots.begin(), list_.slots.end(), [&](const TerrainSlot& s) { return s.slot == slot; });
-  }
-
   const DisplayList& list_;
-  const TerrainSlot& own_;
+  const GridPoint corner_;
+  const double since_list_s_;
 };
 
 // Shares of the three corners at a place of the grid; nullopt outside of the triangle.
@@ -66,15 +62,12 @@ std::optional<std::array<double, 3>> SharesAt(const std::array<GridVertex, 3>& c
 
 }  // namespace
 
-std::optional<double> DrawnGroundAt(const DisplayList& list, const Geodetic& place) {
+std::optional<double> DrawnGroundAt(const DisplayList& list, const Geodetic& place, double since_list_s) {
   const Quadcode finest = Quadcode::Containing(place.latitude_deg, place.longitude_deg, kMaxLevel);
   const auto draw = std::find_if(list.terrain_draws.begin(), list.terrain_draws.end(),
                                  [&](const TerrainDraw& d) { return d.node.Contains(finest); });
   if (draw == list.terrain_draws.end()) return std::nullopt;
-  const auto own = std::find_if(list.slots.begin(), list.slots.end(),
-                                [&](const TerrainSlot& slot) { return slot.page->node == draw->node; });
-  if (own == list.slots.end()) return std::nullopt;
-  const Vertices vertices(list, *own);
+  const Vertices vertices(list, *draw, since_list_s);
   const GeoBox box = draw->node.Box();
   const double per_degree = draw->node.GridSize() / draw->node.SizeDegrees();
   const double east = std::clamp(std::remainder(place.longitude_deg - box.west_deg, 360.0) * per_degree, 0.0,

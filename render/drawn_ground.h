@@ -14,6 +14,7 @@
 namespace belvedere {
 
 // nullopt where the list draws nothing.
-std::optional<double> DrawnGroundAt(const DisplayList& list, const Geodetic& place);
+// since_list_s: since the list was made.
+std::optional<double> DrawnGroundAt(const DisplayList& list, const Geodetic& place, double since_list_s);
 
 }  // namespace belvedere

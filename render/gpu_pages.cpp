@@ -8,8 +8,6 @@
 namespace belvedere {
 namespace {
 
-constexpr GLsizeiptr kTerrainSlotBytes = static_cast<GLsizeiptr>(kVerticesPerPage * sizeof(TerrainVertex));
-
 GlTextureArray MakeImageArray(GLenum format, int slots, const ContextFacts& facts) {
   GlTextureArray texture = GlTextureArray::Make();
   glTextureStorage3D(texture.get(), kImageMipLevels, format, kImageSide, kImageSide, slots);
@@ -30,28 +28,23 @@ GlTextureArray MakeImageArray(GLenum format, int slots, const ContextFacts& fact
 
 GpuPages::GpuPages(const RenderOptions& options, const LayerTable& layers, const ContextFacts& facts)
     : layers_(layers),
-      terrain_(options.terrain_slots),
       colour_(options.colour_slots),
       overlay_(options.overlay_slots, options.colour_slots),
       model_slots_(options.model_slots),
-      vertices_(GlBuffer::Make()),
       colour_texture_(MakeImageArray(GL_RGBA8, options.colour_slots, facts)),
       overlay_texture_(MakeImageArray(GL_R8, options.overlay_slots, facts)),
-      models_(static_cast<size_t>(options.model_slots)) {
-  glNamedBufferStorage(vertices_.get(), options.terrain_slots * kTerrainSlotBytes, nullptr, GL_DYNAMIC_STORAGE_BIT);
-}
+      models_(static_cast<size_t>(options.model_slots)) {}
 
 GpuPages::Pool GpuPages::PoolOf(const PagePin& pin) {
   switch (KindOf(pin.key().type)) {
-    case PageKind::kTerrain: return {terrain_, "terrain_slots"};
     case PageKind::kColour: return {colour_, "colour_slots"};
     case PageKind::kOverlay: return {overlay_, "overlay_slots"};
     case PageKind::kModel: return {model_slots_, "model_slots"};
-    case PageKind::kElevation: break;
+    case PageKind::kElevation:
+    case PageKind::kTerrain: break;
   }
-  // Elevation is not drawn; nobody may ask for it.
-  BELVEDERE_CHECK(KindOf(pin.key().type) != PageKind::kElevation);
-  return {terrain_, ""};
+  BELVEDERE_CHECK(IsKept(pin.key().type));  // nobody may ask for what is not kept here
+  return {colour_, ""};
 }
 
 GpuPages::Outcome GpuPages::Upload(const PagePin& pin, uint64_t frame) {
@@ -59,7 +52,7 @@ GpuPages::Outcome GpuPages::Upload(const PagePin& pin, uint64_t frame) {
   const Pool pool = PoolOf(pin);
   const std::optional<int> slot = pool.slots.Take(frame);
   if (!slot) {
-    const auto which = static_cast<size_t>(KindOf(pin.key().type)) - 1;
+    const auto which = static_cast<size_t>(KindOf(pin.key().type)) - static_cast<size_t>(PageKind::kColour);
     if (!warned_.at(which)) {
       LogWarning("render: all {} slots are in use, finer pages wait; raise {} in the station's [render]",
                  pool.slots.size(), pool.setting);
@@ -74,13 +67,6 @@ GpuPages::Outcome GpuPages::Upload(const PagePin& pin, uint64_t frame) {
 
 void GpuPages::Copy(const PagePin& pin, int slot) {
   switch (KindOf(pin.key().type)) {
-    case PageKind::kTerrain: {
-      const auto& page = pin.as<TerrainPage>();
-      BELVEDERE_CHECK(page.vertices.size() == kVerticesPerPage);
-      glNamedBufferSubData(vertices_.get(), slot * kTerrainSlotBytes, kTerrainSlotBytes, page.vertices.data());
-      uploaded_bytes_ += static_cast<uint64_t>(kTerrainSlotBytes);
-      return;
-    }
     case PageKind::kColour:
       BELVEDERE_CHECK(pin.as<ImagePage>().format == ImageFormat::kRGBA8);
       CopyImage(pin.as<ImagePage>(), colour_texture_.get(), slot);
@@ -90,7 +76,8 @@ void GpuPages::Copy(const PagePin& pin, int slot) {
       CopyImage(pin.as<ImagePage>(), overlay_texture_.get(), slot - overlay_.first());
       return;
     case PageKind::kModel: CopyModel(pin.as<ModelPage>(), slot); return;
-    case PageKind::kElevation: return;
+    case PageKind::kElevation:
+    case PageKind::kTerrain: return;
   }
 }
 
@@ -120,7 +107,7 @@ void GpuPages::CopyModel(const ModelPage& page, int slot) {
 
 void GpuPages::Touch(const DisplayList& list, uint64_t frame) {
   for (const PagePin& pin : list.page_pins) {
-    if (KindOf(pin.key().type) == PageKind::kElevation) continue;
+    if (!IsKept(pin.key().type)) continue;
     Residency& residency = *pin.page().residency();
     const std::optional<int> slot = residency.TryPin();
     if (!slot) continue;

@@ -1,5 +1,5 @@
-// GpuPages: the pages that are on the GPU, in pools of slots of one size each: terrain vertices in one buffer, images
-// in one array texture a format, and a table of models.
+// GpuPages: the pages that are on the GPU, in pools of slots of one size each: images in one array texture a
+// format, and a table of models.
 //
 // Image slots are numbered through both formats, colour first: the slot of an ImageUse says which array holds it,
 // whatever layers the view shows by now. Place and eviction follow SlotPool; a pool that is full of pages in use says
@@ -36,22 +36,22 @@ class GpuPages {
 
   GpuPages(const RenderOptions& options, const LayerTable& layers, const ContextFacts& facts);
 
-  // Puts the page into a slot of its pool. REQUIRES: the key's data type is in the layer table, and not elevation.
+  // Puts the page into a slot of its pool. REQUIRES: the key's data type is in the layer table: an image or a model.
   Outcome Upload(const PagePin& pin, uint64_t frame);
   // The list is drawn from now on: what it uses was used now.
   void Touch(const DisplayList& list, uint64_t frame);
   // Binds the image pools to texture units 0 and 1.
   void BindImages() const;
 
-  GLuint vertices() const { return vertices_.get(); }
   // REQUIRES: slot is one of a pinned model page.
   const GpuModel& model(int slot) const { return models_[static_cast<size_t>(slot)]; }
+  // Whether pages of the data type come to the GPU: of terrain, lists bring the vertices.
+  bool IsKept(DataType type) const { return KindOf(type) >= PageKind::kColour; }
   PageKind KindOf(DataType type) const { return layers_.at(type).kind; }
   // Whether the image slot is of the colour array, and which layer of its array it is.
   bool IsColour(int image_slot) const { return colour_.Owns(image_slot); }
   int ArrayLayer(int image_slot) const { return IsColour(image_slot) ? image_slot : image_slot - overlay_.first(); }
   uint64_t uploaded_bytes() const { return uploaded_bytes_; }
-  const SlotPool& terrain_pool() const { return terrain_; }
   const SlotPool& colour_pool() const { return colour_; }
   const SlotPool& overlay_pool() const { return overlay_; }
 
@@ -66,11 +66,10 @@ class GpuPages {
   void CopyModel(const ModelPage& page, int slot);
 
   const LayerTable& layers_;
-  SlotPool terrain_, colour_, overlay_, model_slots_;
-  GlBuffer vertices_;
+  SlotPool colour_, overlay_, model_slots_;
   GlTextureArray colour_texture_, overlay_texture_;
   std::vector<GpuModel> models_;
-  std::array<bool, 4> warned_{};
+  std::array<bool, 3> warned_{};
   uint64_t uploaded_bytes_ = 0;
 };
 

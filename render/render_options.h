@@ -11,8 +11,7 @@ namespace belvedere {
 struct RenderOptions {
   double max_fps = 60;          // frames are not drawn more often; 0: no limit
   double upload_budget_ms = 4;  // a frame, for all views together; one page is always uploaded
-  // Slots of GPU memory: 266 KB a terrain page, 350 KB a colour page, 87 KB an overlay page.
-  int terrain_slots = 960;
+  // Slots of GPU memory: 350 KB a colour page, 87 KB an overlay page.
   int colour_slots = 192;
   int overlay_slots = 480;
   int model_slots = 64;

@@ -23,9 +23,10 @@ constexpr double kLongestUnchanged_s = 1.0;  // the sun goes on, and a window ma
 constexpr double kLeastOverGround_m = 1.0;
 
 // Where the list draws its ground over the eye, since pages have not come, the picture is taken from just above that.
-ViewMatrices MatricesOver(const DisplayList& terrain, const ViewParameters& parameters, double now_s) {
+ViewMatrices MatricesOver(const DisplayList& terrain, const ViewParameters& parameters, double now_s,
+                          double since_list_s) {
   const Geodetic eye = ToGeodetic(parameters.EyeAt(now_s));
-  const double over_ground_m = eye.height_m - DrawnGroundAt(terrain, eye).value_or(0.0);
+  const double over_ground_m = eye.height_m - DrawnGroundAt(terrain, eye, since_list_s).value_or(0.0);
   if (over_ground_m >= kLeastOverGround_m) return MatricesOf(parameters, now_s, over_ground_m);
   ViewParameters raised = parameters;
   raised.eye_ecef += (kLeastOverGround_m - over_ground_m) * UpAt(eye.latitude_deg, eye.longitude_deg);
@@ -140,6 +141,7 @@ bool Renderer::HasToBeDrawn(const View& view) const {
   if (view.parameters->width_px <= 0 || view.parameters->height_px <= 0) return false;  // a minimised window
   const bool moves = view.parameters->eye_velocity_mps != glm::dvec3(0) ||
                      !view.channel->object_lists.front().instances.empty() ||
+                     view.drawn_s < view.channel->terrain_lists.front().statistics.rises_until_s ||
                      view.uploads_pending != view.report.uploads_pending;
   return view.has_news || moves || view.notices_number != notices_number_ ||
          start_s_ - view.drawn_s >= kLongestUnchanged_s;
@@ -193,7 +195,7 @@ bool Renderer::DrawFrame(FrameRecorder& recorder, Context& context) {
     view->drawn_s = start_s_;
     view->has_news = false;
     view->notices_number = notices_number_;
-    const Drawn drawn = DrawView(*view, *view->parameters, start_s_);
+    const Drawn drawn = DrawView(*view, *view->parameters, start_s_, start_s_);
     if (view->presenter == nullptr) in_flight_.EndFrame();
     const double draw_ms = (clock_.NowSeconds() - view_start_s) * 1000;
     if (view->presenter != nullptr) {
@@ -207,12 +209,13 @@ bool Renderer::DrawFrame(FrameRecorder& recorder, Context& context) {
   return true;
 }
 
-Renderer::Drawn Renderer::DrawView(View& view, const ViewParameters& parameters, double now_s) {
+Renderer::Drawn Renderer::DrawView(View& view, const ViewParameters& parameters, double now_s, double clock_now_s) {
   const DisplayList& terrain = view.channel->terrain_lists.front();
   const DisplayList& objects = view.channel->object_lists.front();
-  view.matrices = MatricesOver(terrain, parameters, now_s);
+  const double since_list_s = clock_now_s - terrain.time_s;
+  view.matrices = MatricesOver(terrain, parameters, now_s, since_list_s);
   const glm::dvec3 sun_ecef = SunDirectionEcef(parameters.utc_s + (now_s - parameters.time_s));
-  const ViewBlock block = MakeViewBlock(parameters, view.matrices, sun_ecef);
+  const ViewBlock block = MakeViewBlock(parameters, view.matrices, sun_ecef, since_list_s);
   glNamedBufferData(view_block_.get(), sizeof(ViewBlock), &block, GL_STREAM_DRAW);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, view_block_.get());
 
@@ -270,9 +273,10 @@ void Renderer::DrawOverlay(View& view, const ViewParameters& parameters, double 
   overlay_.Draw(view.overlay);
 }
 
-bool Renderer::IsSettled(const View& view, const ViewParameters& parameters) {
+bool Renderer::IsSettled(const View& view, const ViewParameters& parameters, double clock_now_s) {
   const DisplayList& terrain = view.channel->terrain_lists.front();
-  return view.has_terrain && terrain.statistics.settled && terrain.view_number == parameters.number;
+  return view.has_terrain && terrain.statistics.settled && terrain.view_number == parameters.number &&
+         clock_now_s >= terrain.statistics.rises_until_s;
 }
 
 void Renderer::Report(View& view, double frame_ms, double draw_ms, const Drawn& drawn, FrameRecorder& recorder) {
@@ -289,7 +293,7 @@ void Renderer::Report(View& view, double frame_ms, double draw_ms, const Drawn& 
   report.uploads_pending = view.uploads_pending;
   report.behind = view.has_terrain && terrain.statistics.behind;
   report.view_number = view.parameters->number;
-  report.settled = IsSettled(view, *view.parameters);
+  report.settled = IsSettled(view, *view.parameters, start_s_);
   view.channel->frame.Publish(report);
 
   FrameSample sample;
@@ -318,11 +322,13 @@ Result<Picture> Renderer::Capture(ViewId id, Moment moment) {
   if (parameters.width_px <= 0 || parameters.height_px <= 0) {
     return Status::Error("capture: view {} has no pixels; give it a size", id);
   }
-  const Drawn drawn = DrawView(*view, parameters, of_parameters ? parameters.time_s : view->drawn_s);
-  return ReadBack(*view, parameters, drawn);
+  const double now_s = of_parameters ? clock_.NowSeconds() : view->drawn_s;
+  const Drawn drawn = DrawView(*view, parameters, of_parameters ? parameters.time_s : view->drawn_s, now_s);
+  return ReadBack(*view, parameters, drawn, now_s);
 }
 
-Picture Renderer::ReadBack(const View& view, const ViewParameters& parameters, const Drawn& drawn) const {
+Picture Renderer::ReadBack(const View& view, const ViewParameters& parameters, const Drawn& drawn,
+                           double clock_now_s) const {
   const DisplayList& terrain = view.channel->terrain_lists.front();
   Picture picture;
   picture.width_px = view.target.width();
@@ -339,7 +345,7 @@ Picture Renderer::ReadBack(const View& view, const ViewParameters& parameters, c
   picture.triangles = drawn.triangles;
   picture.nodes = drawn.nodes;
   picture.achieved_error_px = terrain.statistics.achieved_error_px;
-  picture.settled = IsSettled(view, parameters);
+  picture.settled = IsSettled(view, parameters, clock_now_s);
   return picture;
 }
 
@@ -349,7 +355,7 @@ std::vector<double> Renderer::Redraw(ViewId id, int times) {
   if (view == nullptr || !view->parameters) return draw_ms;
   for (int i = 0; i < times; ++i) {
     const double start_s = clock_.NowSeconds();
-    DrawView(*view, *view->parameters, view->drawn_s);
+    DrawView(*view, *view->parameters, view->drawn_s, view->drawn_s);
     in_flight_.EndFrame();
     draw_ms.push_back((clock_.NowSeconds() - start_s) * 1000);
   }

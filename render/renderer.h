@@ -81,12 +81,13 @@ class Renderer {
   // True when a list or parameters came.
   bool FetchNews(View& view);
   bool HasToBeDrawn(const View& view) const;
-  static bool IsSettled(const View& view, const ViewParameters& parameters);
+  static bool IsSettled(const View& view, const ViewParameters& parameters, double clock_now_s);
   void UploadPages();
-  Drawn DrawView(View& view, const ViewParameters& parameters, double now_s);
+  // now_s: of the view; clock_now_s: how far the surface is on its way.
+  Drawn DrawView(View& view, const ViewParameters& parameters, double now_s, double clock_now_s);
   void DrawOverlay(View& view, const ViewParameters& parameters, double now_s);
   void Report(View& view, double frame_ms, double draw_ms, const Drawn& drawn, FrameRecorder& recorder);
-  Picture ReadBack(const View& view, const ViewParameters& parameters, const Drawn& drawn) const;
+  Picture ReadBack(const View& view, const ViewParameters& parameters, const Drawn& drawn, double clock_now_s) const;
 
   const RenderOptions options_;
   const Clock& clock_;

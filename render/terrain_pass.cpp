@@ -15,13 +15,16 @@ namespace {
 // DrawRow of shaders/terrain.vert.glsl.
 struct DrawRow {
   uint32_t south_west_x = 0, south_west_y = 0;
+  uint32_t post_spacing = 0;
+  uint32_t frame = 0;
   float per_grid_unit = 0;
-  float unused = 0;
+  float per_rise_s = 0;
+  std::array<float, 2> unused{};
   std::array<glm::vec4, kMaxImageLayers> image{};
 };
-static_assert(sizeof(DrawRow) == 64);
-static_assert(sizeof(FrameRow) == 112);
-static_assert(sizeof(TerrainVertex) == 16);
+static_assert(sizeof(DrawRow) == 80);
+static_assert(sizeof(FrameRow) == 128);
+static_assert(sizeof(ListVertex) == 24);
 
 template <typename T>
 void Send(const GlBuffer& buffer, const std::vector<T>& rows) {
@@ -50,22 +53,28 @@ TerrainPass::TerrainPass(const GpuPages& pages, TerrainPrograms& programs)
     : pages_(pages),
       programs_(programs),
       vertex_array_(GlVertexArray::Make()),
+      vertices_(GlBuffer::Make()),
       indices_(GlBuffer::Make()),
       draw_numbers_(GlBuffer::Make()),
-      slots_(GlBuffer::Make()),
       frames_(GlBuffer::Make()),
       draws_(GlBuffer::Make()) {
   const GLuint array = vertex_array_.get();
-  glVertexArrayVertexBuffer(array, 0, pages.vertices(), 0, sizeof(TerrainVertex));
+  glVertexArrayVertexBuffer(array, 0, vertices_.get(), 0, sizeof(ListVertex));
   glEnableVertexArrayAttrib(array, 0);
   glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, 0);
   glVertexArrayAttribBinding(array, 0, 0);
   glEnableVertexArrayAttrib(array, 1);
-  glVertexArrayAttribFormat(array, 1, 2, GL_SHORT, GL_TRUE, offsetof(TerrainVertex, normal));
+  glVertexArrayAttribFormat(array, 1, 2, GL_SHORT, GL_TRUE, offsetof(ListVertex, normal));
   glVertexArrayAttribBinding(array, 1, 0);
   glEnableVertexArrayAttrib(array, 2);
-  glVertexArrayAttribIFormat(array, 2, 1, GL_UNSIGNED_INT, 0);
-  glVertexArrayAttribBinding(array, 2, 1);
+  glVertexArrayAttribIFormat(array, 2, 1, GL_UNSIGNED_INT, offsetof(ListVertex, place));
+  glVertexArrayAttribBinding(array, 2, 0);
+  glEnableVertexArrayAttrib(array, 3);
+  glVertexArrayAttribFormat(array, 3, 1, GL_FLOAT, GL_FALSE, offsetof(ListVertex, rise_m));
+  glVertexArrayAttribBinding(array, 3, 0);
+  glEnableVertexArrayAttrib(array, 4);
+  glVertexArrayAttribIFormat(array, 4, 1, GL_UNSIGNED_INT, 0);
+  glVertexArrayAttribBinding(array, 4, 1);
   glVertexArrayBindingDivisor(array, 1, 1);
   glVertexArrayElementBuffer(array, indices_.get());
 }
@@ -80,21 +89,9 @@ TerrainPass::Layers TerrainPass::LayersOf(const TerrainDraw& draw) const {
 }
 
 void TerrainPass::SetList(const DisplayList& list) {
+  Send(vertices_, list.vertices);
   Send(indices_, list.indices);
-  SetSlots(list);
   SetDraws(list);
-}
-
-void TerrainPass::SetSlots(const DisplayList& list) {
-  struct SlotRow {
-    uint32_t frame, x, y, post_spacing;
-  };
-  std::vector<SlotRow> rows(static_cast<size_t>(pages_.terrain_pool().size()));
-  for (const TerrainSlot& slot : list.slots) {
-    BELVEDERE_CHECK(pages_.terrain_pool().Owns(slot.slot) && slot.frame < list.frames.size());
-    rows[static_cast<size_t>(slot.slot)] = {slot.frame, slot.south_west.x, slot.south_west.y, slot.post_spacing};
-  }
-  Send(slots_, rows);
 }
 
 void TerrainPass::SetDraws(const DisplayList& list) {
@@ -103,7 +100,14 @@ void TerrainPass::SetDraws(const DisplayList& list) {
   layers_of_draw_.clear();
   for (const TerrainDraw& draw : list.terrain_draws) {
     const GridPoint corner = draw.node.SouthWest();
-    DrawRow row{corner.x, corner.y, 1.0F / static_cast<float>(draw.node.GridSize()), 0.0F, {}};
+    BELVEDERE_CHECK(draw.frame < list.frames.size());
+    DrawRow row;
+    row.south_west_x = corner.x;
+    row.south_west_y = corner.y;
+    row.post_spacing = draw.node.PostSpacing();
+    row.frame = draw.frame;
+    row.per_grid_unit = 1.0F / static_cast<float>(draw.node.GridSize());
+    row.per_rise_s = draw.rise_s > 0 ? 1.0F / draw.rise_s : 0.0F;
     for (size_t i = 0; i < row.image.size(); ++i) {
       const ImageUse& use = draw.images[i];
       if (use.slot < 0) continue;
@@ -136,9 +140,8 @@ void TerrainPass::Draw(const DisplayList& list, std::span<const uint32_t> draws,
   if (draws.empty()) return;
   SetMatrices(list, matrices);
   glBindVertexArray(vertex_array_.get());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, slots_.get());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, frames_.get());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 2, draws_.get());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, frames_.get());
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, draws_.get());
   pages_.BindImages();
   for (const Layers& layers : layers_met_) {
     glUseProgram(programs_.For(layers));

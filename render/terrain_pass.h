@@ -1,7 +1,7 @@
-// TerrainPass: draws the surface of one view. All quadnodes share one vertex buffer and use absolute indices, so that a
-// vertex is the same wherever it is drawn (display_list.h).
+// TerrainPass: draws the surface of one view. Quadnodes use one another's vertices, so that a vertex is the same
+// wherever it is drawn (display_list.h).
 //
-// What a list brings (indices, slots, draws) goes to the GPU once, when it is new; the matrices of its frames every
+// What a list brings (vertices, indices, draws) goes to the GPU once, when it is new; the matrices of its frames every
 // time. Threads: the render thread.
 #pragma once
 
@@ -43,13 +43,12 @@ class TerrainPass {
   using Layers = TerrainPrograms::Layers;
   Layers LayersOf(const TerrainDraw& draw) const;
   void SetDraws(const DisplayList& list);
-  void SetSlots(const DisplayList& list);
   void SetMatrices(const DisplayList& list, const ViewMatrices& matrices);
 
   const GpuPages& pages_;
   TerrainPrograms& programs_;
   GlVertexArray vertex_array_;
-  GlBuffer indices_, draw_numbers_, slots_, frames_, draws_;
+  GlBuffer vertices_, indices_, draw_numbers_, frames_, draws_;
   size_t numbered_draws_ = 0;
   std::vector<Layers> layers_of_draw_;
   std::vector<Layers> layers_met_;

@@ -14,6 +14,7 @@ namespace {
 
 const glm::dvec3 kAxes{kEquatorialRadius_m, kEquatorialRadius_m, kPolarRadius_m};
 
+constexpr double kLongest_s = 1e4;         // nothing of a list is on its way for so long
 constexpr double kScaleHeight_m = 8000.0;  // as in shaders/atmosphere.glsl
 
 double SmoothStep(double from, double to, double x) {
@@ -23,7 +24,8 @@ double SmoothStep(double from, double to, double x) {
 
 }  // namespace
 
-ViewBlock MakeViewBlock(const ViewParameters& view, const ViewMatrices& matrices, const glm::dvec3& sun_ecef) {
+ViewBlock MakeViewBlock(const ViewParameters& view, const ViewMatrices& matrices, const glm::dvec3& sun_ecef,
+                        double since_list_s) {
   ViewBlock block{};
   const Geodetic eye = ToGeodetic(matrices.eye_ecef);
   block.sun_ecef =
@@ -42,6 +44,7 @@ ViewBlock MakeViewBlock(const ViewParameters& view, const ViewMatrices& matrices
   const auto width = static_cast<float>(view.width_px);
   const auto height = static_cast<float>(view.height_px);
   block.viewport_px = {width, height, 1.0F / width, 1.0F / height};
+  block.moment = {static_cast<float>(std::clamp(since_list_s, 0.0, kLongest_s)), 0.0F, 0.0F, 0.0F};
   return block;
 }
 
@@ -53,6 +56,7 @@ FrameRow MakeFrameRow(const Frame& frame, const glm::dmat4& clip_from_ecef) {
                             frame.ecef_from_frame[2][axis], frame.origin_ecef[axis]);
     row.scaled_from_frame[static_cast<size_t>(axis)] = glm::vec4(scaled / kAxes[axis]);
   }
+  row.earth_centre = glm::vec4(glm::vec3(frame.ToFrame(glm::dvec3(0.0))), 0.0F);
   return row;
 }
 

@@ -19,13 +19,17 @@ struct ViewBlock {
   glm::vec4 eye_up_ecef;
   std::array<glm::vec4, 3> ray_ecef;
   glm::vec4 viewport_px;
+  glm::vec4 moment;
 };
-ViewBlock MakeViewBlock(const ViewParameters& view, const ViewMatrices& matrices, const glm::dvec3& sun_ecef);
+// since_list_s: since the terrain list was made.
+ViewBlock MakeViewBlock(const ViewParameters& view, const ViewMatrices& matrices, const glm::dvec3& sun_ecef,
+                        double since_list_s);
 
 // A coordinate frame as the terrain shader knows it: FrameRow of shaders/terrain.vert.glsl, std430.
 struct FrameRow {
   glm::mat4 clip_from_frame;                   // multiplied in double
   std::array<glm::vec4, 3> scaled_from_frame;  // rows
+  glm::vec4 earth_centre;                      // in the frame
 };
 FrameRow MakeFrameRow(const Frame& frame, const glm::dmat4& clip_from_ecef);
 

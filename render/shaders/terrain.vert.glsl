@@ -1,26 +1,29 @@
-// One terrain vertex. Its position depends on its absolute number and the view alone, never on the quadnode that is drawn
-// with it: that, and `invariant`, is what makes neighbours meet without a gap.
+// One terrain vertex. Its position depends on its number and the view alone, never on the quadnode that is drawn with it: that, and `invariant`, is what makes neighbours meet without a gap.
 layout(location = 0) in vec3 position;         // metres in the frame of the vertex's page
 layout(location = 1) in vec2 octahedral;       // outward normal in the same frame
-layout(location = 2) in uint draw_number;      // one a draw (base instance)
+layout(location = 2) in uint place;            // quadnode << 15 | post
+layout(location = 3) in float rise_m;          // over its place when the list was made
+layout(location = 4) in uint draw_number;      // one a draw (base instance)
 
 const uint kPosts = 129u;
-const uint kVerticesPerPage = kPosts * kPosts;
 const uint kNorthPole = 0x80000000u;
 
 struct FrameRow {
   mat4 clip_from_frame;
   vec4 scaled_from_frame[3];                   // rows of a 3x4 matrix: scaled space from the frame
+  vec4 earth_centre;                           // in the frame
 };
 struct DrawRow {
   uvec2 south_west;
+  uint post_spacing;
+  uint frame;
   float per_grid_unit;                         // 1 / side of the quadnode
-  float unused;
+  float per_rise_s;
+  vec2 unused;
   vec4 image[3];                               // offset u, offset v, scale, array layer
 };
-layout(std430, binding = 0) readonly buffer Slots { uvec4 slots[]; };   // frame, south-west x and y, post spacing
-layout(std430, binding = 1) readonly buffer Frames { FrameRow frames[]; };
-layout(std430, binding = 2) readonly buffer Draws { DrawRow draws[]; };
+layout(std430, binding = 0) readonly buffer Frames { FrameRow frames[]; };
+layout(std430, binding = 1) readonly buffer Draws { DrawRow draws[]; };
 
 invariant gl_Position;
 // Few and full: what a software renderer pays for a small triangle grows with the number of these.
@@ -40,22 +43,23 @@ vec3 NormalInFrame() {
 vec2 ImageCoordinate(vec4 image, vec2 local) { return (4.0 + 248.0 * (image.xy + image.z * local)) * (1.0 / 256.0); }
 
 void main() {
-  uint number = uint(gl_VertexID);
-  uint slot = number / kVerticesPerPage;
-  uint post = number - slot * kVerticesPerPage;
+  uint own = place >> 15;
+  uint post = place & 0x7FFFu;
   uint row = post / kPosts;
-  uvec4 where = slots[slot];
-  uint frame = where.x;
-  gl_Position = frames[frame].clip_from_frame * vec4(position, 1.0);
+  uint frame = draws[own].frame;
+  // On its way from where the surface was before.
+  float left = clamp(1.0 - moment.x * draws[own].per_rise_s, 0.0, 1.0);
+  vec3 here = position + (rise_m * left) * normalize(position - frames[frame].earth_centre.xyz);
+  gl_Position = frames[frame].clip_from_frame * vec4(here, 1.0);
 
-  uvec2 grid = where.yz + where.w * uvec2(post - row * kPosts, row);
+  uvec2 grid = draws[own].south_west + draws[own].post_spacing * uvec2(post - row * kPosts, row);
   vec2 local = clamp(vec2(grid - draws[draw_number].south_west) * draws[draw_number].per_grid_unit, 0.0, 1.0);
   // A pole is a point of every meridian.
   if (grid.y == 0u || grid.y == kNorthPole) local.x = 0.5;
 
-  vec3 scaled = vec3(dot(frames[frame].scaled_from_frame[0], vec4(position, 1.0)),
-                     dot(frames[frame].scaled_from_frame[1], vec4(position, 1.0)),
-                     dot(frames[frame].scaled_from_frame[2], vec4(position, 1.0)));
+  vec3 scaled = vec3(dot(frames[frame].scaled_from_frame[0], vec4(here, 1.0)),
+                     dot(frames[frame].scaled_from_frame[1], vec4(here, 1.0)),
+                     dot(frames[frame].scaled_from_frame[2], vec4(here, 1.0)));
   float radius = length(scaled);
   float height_m = (radius - 1.0) * kEarthRadius_m;
   vec3 up = scaled / radius;                   // of the scaled sphere: within 0.2 degrees of the geodetic one

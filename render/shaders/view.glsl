@@ -5,4 +5,5 @@ layout(std140, binding = 0) uniform ViewBlock {
   vec4 eye_up_ecef;      // xyz: geodetic up at the eye; w: distance from the Earth's centre, metres
   vec4 ray_ecef[3];      // directions at clip (-1,-1), (3,-1), (-1,3)
   vec4 viewport_px;      // width, height, 1 / width, 1 / height
+  vec4 moment;           // x: seconds since the terrain list was made
 };

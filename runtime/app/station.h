@@ -71,12 +71,11 @@ class Station {
     std::unique_ptr<ObjectManager> objects;
   };
 
-  Station(const Clock& clock, int terrain_slots) : clock_(clock), terrain_slots_(terrain_slots) {}
+  explicit Station(const Clock& clock) : clock_(clock) {}
   Status StartPaging(const StationOptions& options);
   void StartReceivers(const FeedSpec& feed);
 
   const Clock& clock_;
-  const int terrain_slots_;  // on the GPU
   std::unique_ptr<Dataset> dataset_;
   Catalogue catalogue_;
   ModuleRegistry registry_;

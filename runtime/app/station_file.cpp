@@ -117,7 +117,6 @@ void ReadRender(SettingsTable& table, RenderOptions& render) {
   constexpr int64_t kMostSlots = 1 << 16;
   Assign(table.Number("max_fps", 0, 1000), render.max_fps);
   Assign(table.Number("upload_ms", 0.1, 1000), render.upload_budget_ms);
-  Assign(table.Integer("terrain_slots", 64, kMostSlots), render.terrain_slots);
   Assign(table.Integer("colour_slots", 33, kMostSlots), render.colour_slots);
   Assign(table.Integer("overlay_slots", 33, kMostSlots), render.overlay_slots);
   Assign(table.Integer("model_slots", 1, kMostSlots), render.model_slots);

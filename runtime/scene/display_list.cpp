@@ -10,7 +10,7 @@ void DisplayList::Clear() {
   records.clear();
   volumes.clear();
   frames.clear();
-  slots.clear();
+  vertices.clear();
   indices.clear();
   terrain_draws.clear();
   instances.clear();

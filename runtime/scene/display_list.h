@@ -9,14 +9,15 @@
 //   kDrawTerrain    index -> terrain_draws
 //   kDrawInstances  index -> instances [index, index + count)
 //
-// Terrain vertices live in GPU slots of kVerticesPerPage each, so that vertex v of the page in slot s has the absolute
-// number s * kVerticesPerPage + v. Indices are absolute: triangles of one quadnode may use vertices of its neighbours'
-// pages, and a vertex that several quadnodes share is the same number in all of them. That is what makes the surface
-// watertight: shared edges are shared numbers. `slots` says, for every slot that the list uses, in which coordinate
-// frame its vertices are and where its posts lie on the grid.
+// Terrain vertices are those of the drawn posts alone, quadnode after quadnode. Indices number them through the whole
+// list: triangles of one quadnode may use vertices of its neighbours, and a vertex that several quadnodes share is the
+// same number in all of them. That is what makes the surface watertight: shared edges are shared numbers.
+//
+// A vertex may start away from its place, where the list before had the surface, and goes there: t seconds after
+// time_s it is rise_m * (1 - t / rise_s) over it, rise_s being that of its quadnode, and from rise_s on not at all.
 //
 // Everything that a list names is pinned by it until it is cleared: pages in the cache (page_pins), slots on the GPU
-// (gpu_pins). `uploads` are the pages that the manager would draw if they were on the GPU, most wanted first.
+// (gpu_pins). `uploads` are the images that the manager would draw if they were on the GPU, most wanted first.
 //
 // Frames: volumes and instances in ECEF, metres, double; times in clock seconds.
 // Threads: built by one manager, read by the render thread.
@@ -56,16 +57,23 @@ struct ImageUse {
   float scale = 1;
 };
 
-struct TerrainSlot {
-  const TerrainPage* page = nullptr;  // pinned by the list
-  int32_t slot = 0;
-  uint32_t frame = 0;         // index -> frames
-  GridPoint south_west;       // of the page's quadnode
-  uint32_t post_spacing = 0;  // grid units between posts
+struct ListVertex {
+  float x = 0, y = 0, z = 0;  // metres in the frame of its quadnode
+  uint32_t normal = 0;        // as in TerrainVertex
+  uint32_t place = 0;         // the draw of its quadnode, and its post in it
+  float rise_m = 0;           // upwards from its place, at time_s
+
+  static constexpr uint32_t kPostBits = 15;
+  static constexpr uint32_t PlaceOf(uint32_t draw, uint32_t post) { return draw << kPostBits | post; }
+  uint32_t draw() const { return place >> kPostBits; }
+  uint32_t post() const { return place & ((1U << kPostBits) - 1U); }
 };
+static_assert(kVerticesPerPage < 1 << ListVertex::kPostBits);
 
 struct TerrainDraw {
   Quadcode node;
+  uint32_t frame = 0;  // index -> frames
+  float rise_s = 0;    // for how long its vertices rise or sink; 0: they do not
   uint32_t first_index = 0;
   uint32_t index_count = 0;  // 3 a triangle
   std::array<ImageUse, kMaxImageLayers> images{};
@@ -97,12 +105,12 @@ struct DisplayList {
   ViewId view = 0;
   uint64_t view_number = 0;  // ViewParameters::number it was built for
   uint64_t number = 0;       // grows with every list of that manager
-  double time_s = 0;         // clock time for which instances are given
+  double time_s = 0;         // clock time for which instances and rises are given
 
   std::vector<ListRecord> records;
   std::vector<BoundingSphere> volumes;
   std::vector<Frame> frames;
-  std::vector<TerrainSlot> slots;
+  std::vector<ListVertex> vertices;
   std::vector<uint32_t> indices;
   std::vector<TerrainDraw> terrain_draws;
   std::vector<ObjectInstance> instances;
@@ -120,6 +128,7 @@ struct DisplayList {
     uint32_t pages_waiting = 0;    // pages wished for and not yet drawn
     bool behind = false;           // some visible quadnode is coarser than the bound asks
     bool settled = false;          // nothing more will come for these view parameters
+    double rises_until_s = 0;      // clock time from which on every vertex is in its place
     double height_above_ground_m = 0;  // of the eye, over the finest resident surface under it
     double build_ms = 0;
   } statistics;

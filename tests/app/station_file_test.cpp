@@ -32,7 +32,7 @@ listen = ["127.0.0.1:3000", "239.1.2.3:3001"]
 exercise = 7
 [render]
 max_fps = 30
-terrain_slots = 800
+overlay_slots = 800
 [keys]
 F2 = "goto 36.5 -118.3 9000 0 -20"
 [[window]]
@@ -69,7 +69,7 @@ position = [10, -20]
   EXPECT_EQ(station->feed.listen.size(), 2U);
   EXPECT_EQ(station->feed.exercise, 7);
   EXPECT_EQ(station->render.max_fps, 30);
-  EXPECT_EQ(station->render.terrain_slots, 800);
+  EXPECT_EQ(station->render.overlay_slots, 800);
   ASSERT_EQ(station->keys.size(), 1U);
   ASSERT_EQ(station->windows.size(), 3U);
   const WindowSpec& one = station->windows[0];

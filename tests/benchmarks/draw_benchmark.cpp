@@ -48,7 +48,7 @@ class Bench {
   void Run() {
     std::printf("renderer %s, build %s, %d x %d, median of %d frames\n", stage_->renderer->facts().renderer.c_str(),
                 BELVEDERE_BUILD_TYPE, options_.width, options_.height, kFrames);
-    Upload(PageKind::kTerrain);
+    for (const Quadcode node : nodes_) scene_.AddTerrain(node, Hills);
     Measure("bare ground, steep", Steep(), 8);
     Upload(PageKind::kColour);
     Measure("1 layer, steep", Steep(), 8);
@@ -74,7 +74,6 @@ class Bench {
   void Upload(PageKind kind) {
     for (const Quadcode node : nodes_) {
       std::vector<PagePin> pins;
-      if (kind == PageKind::kTerrain) pins.push_back(scene_.AddTerrain(node, Hills));
       if (kind == PageKind::kColour) pins.push_back(scene_.AddColourOf(node, Fields));
       if (kind == PageKind::kOverlay) pins.push_back(scene_.AddOverlay(node, 128));
       stage_->Upload(std::move(pins));

@@ -34,7 +34,7 @@ struct Scene {
   DataType terrain = 0;
   std::vector<PagePin> on_gpu;
   std::unordered_set<const Page*> placed;
-  KeptTriangles kept;
+  SurfaceState surface;
 };
 
 // Reads what a list wished for and pretends to upload it. False when there was nothing to do.
@@ -74,7 +74,7 @@ Built Build(Scene& scene, const ViewParameters& view, DisplayList& list) {
   const double start = clock.NowSeconds();
   built.cut = SelectCut(view, matrices, scene.paging->layers, scene.terrain, {}, pages);
   const double middle = clock.NowSeconds();
-  built.mesh = BuildSurface(built.cut.nodes, SightOf(view, matrices.eye_ecef), view.error_px, scene.kept, list);
+  built.mesh = BuildSurface(built.cut.nodes, SightOf(view, matrices.eye_ecef), view.error_px, scene.surface, list);
   built.cut_ms = (middle - start) * 1e3;
   built.mesh_ms = (clock.NowSeconds() - middle) * 1e3;
   pages.Finish(view.view, ListPages::Queues::kTerrain);

@@ -155,7 +155,6 @@ double Run(const Dataset& dataset, const std::string& path, int poses, double bo
   options.exaggeration = exaggeration;
   options.cache_bytes = size_t{1} << 30;
   options.render.max_fps = 30;
-  options.render.terrain_slots = 3072;
   auto station = context.ok() ? Station::Start(options, Clock::System(), std::move(*context))
                               : Result<std::unique_ptr<Station>>(context.status());
   if (!station.ok()) {

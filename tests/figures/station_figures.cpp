@@ -54,7 +54,6 @@ std::unique_ptr<Station> StartStation(const std::string& dataset, size_t cache_b
   options.dataset = dataset;
   options.cache_bytes = cache_bytes;
   options.render.max_fps = max_fps;
-  options.render.terrain_slots = slots;
   options.render.overlay_slots = slots;
   if (with_feed) {
     options.feed.listen = {fmt::format("127.0.0.1:{}", kPort)};

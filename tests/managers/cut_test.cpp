@@ -25,7 +25,6 @@ class FakePages final : public PageAccess {
     return page.get();
   }
   std::optional<int> Slot(const PageKey& key) override {
-    if (key.type == kTerrain) return missing.contains(key.node) ? std::nullopt : std::optional<int>(next_slot_++);
     if (missing_images.contains(key.node)) return std::nullopt;
     return 1000 + key.node.level();
   }
@@ -53,7 +52,6 @@ class FakePages final : public PageAccess {
     return page;
   }
   std::map<Quadcode, std::unique_ptr<TerrainPage>> pages_;
-  int next_slot_ = 0;
 };
 
 class CutTest : public testing::Test {

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+#include <tuple>
+
 namespace belvedere {
 namespace {
 
@@ -32,8 +35,12 @@ class KeptTrianglesTest : public testing::Test {
   }
   size_t TrianglesFor(double error_px) const {
     std::vector<PostTriangle> triangles;
-    PostSelection().Run(node_, sight_, FrameOf(page_->node), error_px, triangles);
+    PostSelection().Run(node_, sight_, FrameOf(page_->node), error_px, {}, 1.0F, triangles);
     return triangles.size();
+  }
+
+  static size_t TrianglesOf(const KeptTriangles::Choice& choice) {
+    return choice.mesh->inner.size() + choice.mesh->at_border.size();
   }
 
   std::unique_ptr<TerrainPage> page_;
@@ -44,17 +51,18 @@ class KeptTrianglesTest : public testing::Test {
 
 TEST_F(KeptTrianglesTest, AreChosenALittleFinerThanAsked) {
   const KeptTriangles::Choice choice = Next();
-  EXPECT_EQ(choice.triangles.size(), TrianglesFor(kErrorPx / (1 + kKeepMargin)));
+  EXPECT_EQ(TrianglesOf(choice), TrianglesFor(kErrorPx / (1 + kKeepMargin)));
   EXPECT_LE(choice.worst, 1.0 / (1 + kKeepMargin) + 1e-6);
   EXPECT_GT(choice.worst, 0.5);
 }
 
 TEST_F(KeptTrianglesTest, AreKeptWhileTheEyeHardlyMoves) {
-  const PostTriangle* first = Next().triangles.data();
+  const KeptMesh* first = Next().mesh;
   for (int step = 1; step <= 5; ++step) {
     sight_.eye_ecef += 70.0 * sight_.forward_ecef;
     const KeptTriangles::Choice choice = Next();
-    EXPECT_EQ(choice.triangles.data(), first);
+    EXPECT_EQ(choice.mesh, first);
+    EXPECT_FALSE(choice.is_new);
     EXPECT_LE(choice.worst, 1.0);
   }
   EXPECT_EQ(kept_.chosen(), 1U);
@@ -78,8 +86,8 @@ TEST_F(KeptTrianglesTest, KeepTheBoundAlongAFlight) {
         glm::normalize(sight_.forward_ecef + 2e-4 * glm::dvec3(chance(random), chance(random), chance(random)));
     const KeptTriangles::Choice choice = Next();
     EXPECT_LE(choice.worst, 1.0 + 1e-6);
-    EXPECT_LE(choice.triangles.size(), TrianglesFor(kErrorPx / (1 + 3 * kKeepMargin)));
-    EXPECT_GE(choice.triangles.size(), TrianglesFor(kErrorPx));
+    EXPECT_LE(TrianglesOf(choice), TrianglesFor(kErrorPx / (1 + 3 * kKeepMargin)));
+    EXPECT_GE(TrianglesOf(choice), TrianglesFor(kErrorPx));
   }
   EXPECT_GT(kept_.chosen(), 2U);
   EXPECT_LT(kept_.chosen(), 100U);
@@ -101,6 +109,43 @@ TEST_F(KeptTrianglesTest, AreChosenAnewForAnotherPageBoundOrPlace) {
   node_.error_scale *= 0.9;  // fewer would do
   kept_.For(node_, sight_, FrameOf(page_->node), 2 * kErrorPx);
   EXPECT_EQ(kept_.chosen(), 5U);
+}
+
+// Otherwise leaving one out would move the surface by more than a pixel.
+TEST_F(KeptTrianglesTest, PostsStayUntilTheirErrorIsHalfTheBound) {
+  constexpr double kWide_px = 4;
+  const auto count = [&](double scale) {
+    node_.error_scale = scale;
+    kept_.ForgetUnused();
+    return TrianglesOf(kept_.For(node_, sight_, FrameOf(page_->node), kWide_px));
+  };
+  const size_t before = count(16'000);
+  ASSERT_GT(before, 100U);
+  EXPECT_EQ(count(9'000), before) << "errors are 0.56 of what they were";
+  const size_t later = count(4'000);
+  EXPECT_LT(later, before);
+  KeptTriangles fresh;
+  EXPECT_GT(later, TrianglesOf(fresh.For(node_, sight_, FrameOf(page_->node), kWide_px)));
+}
+
+// Every vertex is that of its post, once, and those on the border are known.
+TEST_F(KeptTrianglesTest, HaveOneVertexAPost) {
+  const KeptMesh& mesh = *Next().mesh;
+  std::set<uint32_t> posts;
+  for (const ListVertex& vertex : mesh.vertices) {
+    EXPECT_TRUE(posts.insert(vertex.post()).second);
+    const TerrainVertex& of_page = page_->vertices[vertex.post()];
+    EXPECT_EQ(std::tie(vertex.x, vertex.y, vertex.z), std::tie(of_page.x, of_page.y, of_page.z));
+  }
+  const auto at_border = [&](uint16_t vertex) {
+    const int column = static_cast<int>(mesh.vertices[vertex].post()) % kPosts;
+    const int row = static_cast<int>(mesh.vertices[vertex].post()) / kPosts;
+    return column == 0 || column == kCells || row == 0 || row == kCells;
+  };
+  for (const KeptMesh::Triangle& t : mesh.inner) EXPECT_FALSE(at_border(t.a) || at_border(t.b) || at_border(t.c));
+  for (const KeptMesh::Triangle& t : mesh.at_border) EXPECT_TRUE(at_border(t.a) || at_border(t.b) || at_border(t.c));
+  for (const uint16_t vertex : mesh.border_vertices) EXPECT_TRUE(at_border(vertex));
+  EXPECT_GE(mesh.border_vertices.size(), 4U);
 }
 
 TEST_F(KeptTrianglesTest, AreForgottenOnceAListDoesNotAskForThem) {

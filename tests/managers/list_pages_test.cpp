@@ -23,11 +23,7 @@ LayerTable ThreeLayers() {
 
 class ListPagesTest : public testing::Test {
  protected:
-  PagePin PutTerrain(Quadcode node) {
-    auto page = std::make_unique<TerrainPage>();
-    page->node = node;
-    return paging_.cache.Insert({kTerrain, node}, std::move(page));
-  }
+  PagePin PutImage(Quadcode node) { return paging_.cache.Insert({kImagery, node}, std::make_unique<ImagePage>()); }
 
   ManualClock clock_;
   Paging paging_{ThreeLayers(), size_t{1} << 24, clock_};
@@ -46,22 +42,32 @@ TEST_F(ListPagesTest, WhatIsNotInMemoryBecomesAWish) {
   EXPECT_TRUE(list_.uploads.empty());
 }
 
-TEST_F(ListPagesTest, WhatIsInMemoryButNotOnTheGpuBecomesAnUpload) {
-  PutTerrain(node_);
+TEST_F(ListPagesTest, TerrainInMemoryIsDrawnFromThere) {
+  auto page = std::make_unique<TerrainPage>();
+  const TerrainPage* made = page.get();
+  paging_.cache.Insert({kTerrain, node_}, std::move(page));
   ListPages pages(paging_, kTerrain, list_);
-  ASSERT_NE(pages.Terrain(node_), nullptr);
-  EXPECT_EQ(pages.Slot({kTerrain, node_}), std::nullopt);
-  EXPECT_TRUE(pages.Want({kTerrain, node_}, 5));
+  EXPECT_EQ(pages.Terrain(node_), made);
+  pages.Finish(kView, ListPages::Queues::kTerrain);
+  EXPECT_TRUE(list_.uploads.empty());
+  EXPECT_GT(paging_.cache.PinnedBytes(), 0U);
+}
+
+TEST_F(ListPagesTest, WhatIsInMemoryButNotOnTheGpuBecomesAnUpload) {
+  PutImage(node_);
+  ListPages pages(paging_, kTerrain, list_);
+  EXPECT_EQ(pages.Slot({kImagery, node_}), std::nullopt);
+  EXPECT_TRUE(pages.Want({kImagery, node_}, 5));
   pages.Finish(kView, ListPages::Queues::kTerrain);
   ASSERT_EQ(list_.uploads.size(), 1U);
   EXPECT_EQ(list_.uploads[0].key().node, node_);
-  EXPECT_EQ(paging_.queue(kTerrain).TryTake(), std::nullopt);
+  EXPECT_EQ(paging_.queue(kImagery).TryTake(), std::nullopt);
 }
 
 TEST_F(ListPagesTest, UploadsComeMostWantedFirst) {
-  for (int which = 0; which < 4; ++which) PutTerrain(Quadcode::Root(which));
+  for (int which = 0; which < 4; ++which) PutImage(Quadcode::Root(which));
   ListPages pages(paging_, kTerrain, list_);
-  for (const int which : {2, 0, 3, 1}) pages.Want({kTerrain, Quadcode::Root(which)}, static_cast<float>(which));
+  for (const int which : {2, 0, 3, 1}) pages.Want({kImagery, Quadcode::Root(which)}, static_cast<float>(which));
   pages.Finish(kView, ListPages::Queues::kTerrain);
   ASSERT_EQ(list_.uploads.size(), 4U);
   for (int place = 0; place < 4; ++place) {
@@ -72,13 +78,13 @@ TEST_F(ListPagesTest, UploadsComeMostWantedFirst) {
 TEST_F(ListPagesTest, WhatItHandsOutStaysUntilTheListIsCleared) {
   const Residency* residency = nullptr;
   {
-    const PagePin pin = PutTerrain(node_);
+    const PagePin pin = PutImage(node_);
     residency = pin.page().residency().get();
     pin.page().residency()->Place(11);
   }
   {
     ListPages pages(paging_, kTerrain, list_);
-    EXPECT_EQ(pages.Slot({kTerrain, node_}), 11);
+    EXPECT_EQ(pages.Slot({kImagery, node_}), 11);
   }
   EXPECT_GT(paging_.cache.PinnedBytes(), 0U);
   EXPECT_FALSE(const_cast<Residency*>(residency)->TryEvict());

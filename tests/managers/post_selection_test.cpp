@@ -31,7 +31,7 @@ struct Scene {
     sight.eye_ecef = ToEcef({36.9, -118.2, 60'000});
     sight.forward_ecef = glm::normalize(ToEcef({37.3, -117.6, 0}) - sight.eye_ecef);
     sight.cos_corner = 0.7;
-    worst = PostSelection().Run(node, sight, FrameOf(page->node), error_px, triangles);
+    worst = PostSelection().Run(node, sight, FrameOf(page->node), error_px, {}, 1.0F, triangles);
   }
 
   // Screen-space error of the post's delta value, were it at the depth of `where`; 0 behind the eye.
@@ -127,7 +127,7 @@ TEST(PostSelection, FlatGroundIsTwoTriangles) {
   node.page = page.get();
   node.error_scale = 700;
   std::vector<PostTriangle> triangles;
-  EXPECT_EQ(PostSelection().Run(node, Sight{}, FrameOf(page->node), 1.0, triangles), 0.0F);
+  EXPECT_EQ(PostSelection().Run(node, Sight{}, FrameOf(page->node), 1.0, {}, 1.0F, triangles), 0.0F);
   EXPECT_EQ(triangles.size(), 2U);
 }
 

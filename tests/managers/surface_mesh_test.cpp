@@ -30,7 +30,6 @@ Surface MakeSurface(std::mt19937& random, const std::vector<Quadcode>& nodes, co
     CutNode drawn;
     drawn.node = node;
     drawn.page = surface.pages.back().get();
-    drawn.slot = static_cast<int>(surface.cut.size());
     drawn.error_scale = 700;
     surface.cut.push_back(drawn);
   }
@@ -38,17 +37,18 @@ Surface MakeSurface(std::mt19937& random, const std::vector<Quadcode>& nodes, co
   sight.eye_ecef = eye_ecef;
   sight.forward_ecef = -glm::normalize(eye_ecef);
   sight.cos_corner = 0.7;
-  KeptTriangles kept;
-  surface.statistics = BuildSurface(surface.cut, sight, error_px, kept, surface.list);
+  SurfaceState state;
+  state.morph.Begin(0, true);
+  surface.statistics = BuildSurface(surface.cut, sight, error_px, state, surface.list);
   return surface;
 }
 
-// Position on the grid of an absolute vertex; all of a pole is one position, and 180 E is 180 W.
+// Position on the grid of a vertex; all of a pole is one position, and 180 E is 180 W.
 GridPoint PositionOf(const Surface& surface, uint32_t vertex) {
-  const TerrainSlot& slot = surface.list.slots[vertex / kVerticesPerPage];
-  const uint32_t post = vertex % kVerticesPerPage;
-  GridPoint point{slot.south_west.x + (post % kPosts) * slot.post_spacing,
-                  slot.south_west.y + (post / kPosts) * slot.post_spacing};
+  const ListVertex& v = surface.list.vertices[vertex];
+  const Quadcode node = surface.list.terrain_draws[v.draw()].node;
+  GridPoint point{node.SouthWest().x + v.post() % kPosts * node.PostSpacing(),
+                  node.SouthWest().y + v.post() / kPosts * node.PostSpacing()};
   if (point.y == 0 || point.y == kGridNorthPole) point.x = 0;
   return point;
 }
@@ -124,8 +124,8 @@ TEST(SurfaceMesh, EveryTriangleFacesOutwards) {
   std::mt19937 random(4);
   const Surface surface = MakeSurface(random, RandomCutNodes(random, 20, 8), ToEcef({10, 20, 1e6}), 16.0);
   const auto position = [&](uint32_t vertex) {
-    const TerrainVertex& v = surface.pages[vertex / kVerticesPerPage]->vertices[vertex % kVerticesPerPage];
-    return FrameOf(surface.pages[vertex / kVerticesPerPage]->node).ToEcef({v.x, v.y, v.z});
+    const ListVertex& v = surface.list.vertices[vertex];
+    return surface.list.frames[surface.list.terrain_draws[v.draw()].frame].ToEcef({v.x, v.y, v.z});
   };
   for (size_t t = 0; t < surface.list.indices.size(); t += 3) {
     const glm::dvec3 a = position(surface.list.indices[t]);
@@ -155,8 +155,8 @@ TEST(SurfaceMesh, TheFarSideIsRoundThoughNobodyLooksAtIt) {
   hidden.error_scale = 0;  // behind the horizon
   DisplayList list;
   const std::vector<CutNode> cut{hidden};
-  KeptTriangles kept;
-  EXPECT_EQ(BuildSurface(cut, Sight{}, 2.0, kept, list).triangles,
+  SurfaceState state;
+  EXPECT_EQ(BuildSurface(cut, Sight{}, 2.0, state, list).triangles,
             2U * kCells * kCells - kCells);  // less one a column at the pole
 }
 

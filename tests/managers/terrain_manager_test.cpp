@@ -11,10 +11,7 @@ namespace {
 
 constexpr DataType kTerrain = 0;
 
-// Lists of a running manager, as the render thread would fetch them; every page it wishes for is made at once, and
-// every upload is placed.
-constexpr int kSlots = 640;
-
+// Lists of a running manager, as the render thread would fetch them; every page it wishes for is made at once.
 class TerrainManagerTest : public testing::Test {
  protected:
   TerrainManagerTest() {
@@ -37,15 +34,12 @@ class TerrainManagerTest : public testing::Test {
     return channel_->terrain_lists.front();
   }
 
-  void Serve(const DisplayList& list) {
+  void Serve() {
     while (const std::optional<PageKey> key = paging_.queue(kTerrain).TryTake()) {
       auto page = test::FlatPage(key->node, std::vector<float>(kVerticesPerPage, 1.0F));
       page->error_m = key->node.level() < 2 ? 20'000.0F : 0.0F;
       kept_.push_back(paging_.cache.Insert(*key, std::move(page)));
       paging_.queue(kTerrain).Done(*key);
-    }
-    for (const PagePin& pin : list.uploads) {
-      if (!pin.page().residency()->on_gpu()) pin.page().residency()->Place(next_slot_++);
     }
   }
 
@@ -53,54 +47,42 @@ class TerrainManagerTest : public testing::Test {
   std::shared_ptr<ViewChannel> channel_ = std::make_shared<ViewChannel>();
   ViewParameters view_;
   std::vector<PagePin> kept_;
-  int next_slot_ = 0;
 };
 
 TEST_F(TerrainManagerTest, GoesFromNothingToASettledCut) {
-  TerrainManager manager(1, paging_, channel_, kSlots, Clock::System());
+  TerrainManager manager(1, paging_, channel_, Clock::System());
   uint32_t nodes = 0;
   while (true) {
     const DisplayList& list = NextList();
     EXPECT_GE(list.statistics.nodes, nodes) << "a still eye never sees the cut grow coarser";
     nodes = list.statistics.nodes;
     if (list.statistics.settled) break;
-    Serve(list);
+    Serve();
   }
   const DisplayList& list = channel_->terrain_lists.front();
   EXPECT_GT(nodes, 32U);
   EXPECT_EQ(list.terrain_draws.size(), nodes);
-  EXPECT_EQ(list.slots.size(), nodes);
   EXPECT_EQ(list.view_number, 1U);
   EXPECT_FALSE(list.statistics.behind);
   EXPECT_LE(list.statistics.achieved_error_px, view_.error_px * 1.001);
   EXPECT_NEAR(list.statistics.height_above_ground_m, 3e6, 10);
 }
 
-// Otherwise it would wish for pages that never find a place, and never come to rest.
-TEST_F(TerrainManagerTest, ACutHasRoomInTheSlotsOfTheGpu) {
-  TerrainManager manager(1, paging_, channel_, 64, Clock::System());
-  while (!NextList().statistics.settled) Serve(channel_->terrain_lists.front());
-  EXPECT_LE(channel_->terrain_lists.front().statistics.nodes, 42U);
-  EXPECT_GT(channel_->terrain_lists.front().statistics.nodes, 32U);
-  EXPECT_LE(next_slot_, 64);
-  EXPECT_TRUE(channel_->terrain_lists.front().statistics.behind);
-}
-
 TEST_F(TerrainManagerTest, ANewViewGivesANewList) {
-  TerrainManager manager(1, paging_, channel_, kSlots, Clock::System());
-  while (!NextList().statistics.settled) Serve(channel_->terrain_lists.front());
+  TerrainManager manager(1, paging_, channel_, Clock::System());
+  while (!NextList().statistics.settled) Serve();
   view_.number = 2;
   view_.eye_ecef = ToEcef({20, 30, 2e6});
   channel_->parameters.Publish(view_);
   while (NextList().view_number != 2 || !channel_->terrain_lists.front().statistics.settled) {
-    Serve(channel_->terrain_lists.front());
+    Serve();
   }
   EXPECT_NEAR(channel_->terrain_lists.front().statistics.height_above_ground_m, 2e6, 10);
 }
 
 TEST_F(TerrainManagerTest, WithdrawsItsWishesWhenItEnds) {
   {
-    TerrainManager manager(1, paging_, channel_, kSlots, Clock::System());
+    TerrainManager manager(1, paging_, channel_, Clock::System());
     NextList();
   }
   EXPECT_EQ(paging_.queue(kTerrain).Stats().waiting, 0U);

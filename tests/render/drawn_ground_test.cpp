@@ -10,19 +10,20 @@
 namespace belvedere::testing {
 namespace {
 
+constexpr double kLater_s = 60;  // when every vertex is in its place
+
 double Sloping(double latitude_deg, double longitude_deg) {
   return 1000 + 5000 * (latitude_deg - 10) - 3000 * std::remainder(longitude_deg - 180, 360.0);
 }
 
-// A list of nine quadnodes around the place, as if all were on the GPU.
+// A list of nine quadnodes around the place.
 struct Ground {
   Scene scene;
   DisplayList list;
 
   Ground(double latitude_deg, double longitude_deg, int level, const Height& height, int step) {
     const std::vector<Quadcode> nodes = Block(latitude_deg, longitude_deg, level, 3);
-    int slot = 0;
-    for (const Quadcode node : nodes) scene.AddTerrain(node, height).page().residency()->Place(slot++);
+    for (const Quadcode node : nodes) scene.AddTerrain(node, height);
     AddSurface(list, scene, nodes, step);
   }
 };
@@ -33,7 +34,7 @@ TEST(DrawnGround, IsTheHeightOfTheTrianglesAtThePlace) {
   const Ground ground(10, 20, 10, Sloping, 8);
   for (int i = 0; i < 200; ++i) {
     const double latitude_deg = 10 + within(random), longitude_deg = 20 + within(random);
-    const auto height_m = DrawnGroundAt(ground.list, {latitude_deg, longitude_deg, 0});
+    const auto height_m = DrawnGroundAt(ground.list, {latitude_deg, longitude_deg, 0}, kLater_s);
     ASSERT_TRUE(height_m.has_value());
     EXPECT_NEAR(*height_m, Sloping(latitude_deg, longitude_deg), 0.05);
   }
@@ -49,26 +50,36 @@ TEST(DrawnGround, IsThatOfWhatIsDrawnAndNotOfThePage) {
         return spike(latitude_deg - between_deg + 10.0, longitude_deg);
       },
       8);
-  EXPECT_NEAR(*DrawnGroundAt(ground.list, {between_deg, 20.01, 0}), 0.0, 1.0);
+  EXPECT_NEAR(*DrawnGroundAt(ground.list, {between_deg, 20.01, 0}, kLater_s), 0.0, 1.0);
 }
 
 TEST(DrawnGround, IsFoundOnBothSidesOf180E) {
   const Ground ground(
       10, 179.999, 10, [](double, double) { return 700.0; }, 16);
   for (const double longitude_deg : {179.99, 180.0, -180.0})
-    EXPECT_NEAR(DrawnGroundAt(ground.list, {10, longitude_deg, 0}).value_or(-1), 700.0, 0.2) << longitude_deg;
+    EXPECT_NEAR(DrawnGroundAt(ground.list, {10, longitude_deg, 0}, kLater_s).value_or(-1), 700.0, 0.2) << longitude_deg;
 }
 
 TEST(DrawnGround, IsFoundAtThePole) {
   const Ground ground(
       82.0, 30, 3, [](double, double) { return 2800.0; }, 1);
-  EXPECT_NEAR(DrawnGroundAt(ground.list, {90, 30, 0}).value_or(-1), 2800.0, 5.0);
+  EXPECT_NEAR(DrawnGroundAt(ground.list, {90, 30, 0}, kLater_s).value_or(-1), 2800.0, 5.0);
+}
+
+TEST(DrawnGround, IsWhereTheVerticesAreOnTheirWay) {
+  Ground ground(
+      10, 20, 10, [](double, double) { return 700.0; }, 8);
+  for (TerrainDraw& draw : ground.list.terrain_draws) draw.rise_s = 2;
+  for (ListVertex& vertex : ground.list.vertices) vertex.rise_m = -300;
+  EXPECT_NEAR(*DrawnGroundAt(ground.list, {10, 20, 0}, -1), 400.0, 0.2);
+  EXPECT_NEAR(*DrawnGroundAt(ground.list, {10, 20, 0}, 0.5), 475.0, 0.2);
+  EXPECT_NEAR(*DrawnGroundAt(ground.list, {10, 20, 0}, 2), 700.0, 0.2);
 }
 
 TEST(DrawnGround, IsNothingWhereNothingIsDrawn) {
   const Ground ground(10, 20, 10, Sloping, 8);
-  EXPECT_FALSE(DrawnGroundAt(ground.list, {-40, 20, 0}).has_value());
-  EXPECT_FALSE(DrawnGroundAt(DisplayList(), {10, 20, 0}).has_value());
+  EXPECT_FALSE(DrawnGroundAt(ground.list, {-40, 20, 0}, kLater_s).has_value());
+  EXPECT_FALSE(DrawnGroundAt(DisplayList(), {10, 20, 0}, kLater_s).has_value());
 }
 
 }  // namespace

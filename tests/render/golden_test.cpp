@@ -62,7 +62,7 @@ class Golden : public ::testing::Test {
  protected:
   void SetUp() override {
     RenderOptions options;
-    options.terrain_slots = options.colour_slots = options.overlay_slots = 24;
+    options.colour_slots = options.overlay_slots = 24;
     auto stage = Stage::Make(scene_, options, clock_);
     ASSERT_TRUE(stage.ok()) << stage.message();
     stage_ = std::move(*stage);
@@ -72,7 +72,7 @@ class Golden : public ::testing::Test {
   Picture Draw(ViewParameters view) {
     const std::vector<Quadcode> nodes = Block(10, 10, 10, 3);
     for (size_t i = 0; i < nodes.size(); ++i) {
-      Load(scene_.AddTerrain(nodes[i], Hills));
+      scene_.AddTerrain(nodes[i], Hills);
       Load(scene_.AddColourOf(nodes[i], [](double u, double v) {
         const bool light = (static_cast<int>(std::floor(u * 8)) + static_cast<int>(std::floor(v * 8))) % 2 == 0;
         return light ? Rgba{120, 150, 80, 255} : Rgba{90, 110, 60, 255};

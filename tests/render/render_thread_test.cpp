@@ -16,7 +16,6 @@ class Thread : public ::testing::Test {
   void Start(double max_fps) {
     RenderOptions options;
     options.max_fps = max_fps;
-    options.terrain_slots = 4;
     options.colour_slots = 4;
     options.overlay_slots = 4;
     auto context = MakeOffscreenContext();

@@ -34,7 +34,6 @@ class Drawing : public ::testing::Test {
  protected:
   void SetUp() override {
     RenderOptions options;
-    options.terrain_slots = 24;
     options.colour_slots = 24;
     options.overlay_slots = 24;
     auto stage = Stage::Make(scene_, options, clock_);
@@ -42,11 +41,7 @@ class Drawing : public ::testing::Test {
     stage_ = std::move(*stage);
   }
   void Load(const std::vector<Quadcode>& nodes, const Height& height) {
-    for (const Quadcode node : nodes) {
-      std::vector<PagePin> pins;
-      pins.push_back(scene_.AddTerrain(node, height));
-      stage_->Upload(std::move(pins));
-    }
+    for (const Quadcode node : nodes) scene_.AddTerrain(node, height);
     nodes_ = nodes;
   }
   void Load(PagePin pin) {

@@ -30,12 +30,12 @@ class Uploads : public ::testing::Test {
     DisplayList& list = channel.terrain_lists.back();
     list.Clear();
     for (const Quadcode node : nodes) {
-      list.uploads.push_back(scene_.AddTerrain(node, [](double, double) { return 0.0; }));
+      list.uploads.push_back(scene_.AddOverlay(node, 9));
     }
     channel.terrain_lists.Publish();
   }
   bool OnGpu(Quadcode node) {
-    const PagePin pin = scene_.Find(scene_.terrain_type(), node);
+    const PagePin pin = scene_.Find(scene_.overlay_type(), node);
     return pin && pin.page().residency()->on_gpu();
   }
   int CountOnGpu(const std::vector<Quadcode>& nodes) {
@@ -51,7 +51,7 @@ class Uploads : public ::testing::Test {
 
 TEST_F(Uploads, StayWithinTheBudgetMostWantedFirst) {
   RenderOptions options;
-  options.terrain_slots = 16;
+  options.overlay_slots = 16;
   options.upload_budget_ms = 3;
   ASSERT_NO_FATAL_FAILURE(Open(options));
   const std::vector<Quadcode> nodes = Block(0, 0, 10, 3);
@@ -60,7 +60,7 @@ TEST_F(Uploads, StayWithinTheBudgetMostWantedFirst) {
   EXPECT_EQ(CountOnGpu(nodes), 3);  // a millisecond each
   EXPECT_TRUE(OnGpu(nodes[0]) && OnGpu(nodes[1]) && OnGpu(nodes[2]));
   EXPECT_EQ(stage_->channel->frame.Get()->uploads_pending, 6U);
-  EXPECT_EQ(stage_->recorder.Take().back().upload_bytes, 3 * kVerticesPerPage * sizeof(TerrainVertex));
+  EXPECT_EQ(stage_->recorder.Take().back().upload_bytes, 3 * ImagePage::MipOffset(kImageMipLevels, ImageFormat::kR8));
   stage_->Frame();
   stage_->Frame();
   EXPECT_EQ(CountOnGpu(nodes), 9);
@@ -95,7 +95,7 @@ TEST_F(Uploads, ViewsShareTheBudget) {
 
 TEST_F(Uploads, AFullPoolEvictsWhatNobodyPinsAndRefusesTheRest) {
   RenderOptions options;
-  options.terrain_slots = 4;
+  options.overlay_slots = 4;
   options.upload_budget_ms = 1000;
   ASSERT_NO_FATAL_FAILURE(Open(options));
   const std::vector<Quadcode> first = Block(0, 0, 10, 2);
@@ -105,17 +105,17 @@ TEST_F(Uploads, AFullPoolEvictsWhatNobodyPinsAndRefusesTheRest) {
   // A list that draws two of them, and wishes for four others.
   DisplayList& list = stage_->channel->terrain_lists.back();
   list.Clear();
+  for (const Quadcode node : {first[0], first[1]}) scene_.AddTerrain(node, [](double, double) { return 0.0; });
   AddSurface(list, scene_, {first[0], first[1]}, 64);
   const std::vector<Quadcode> others = Block(50, 50, 10, 2);
-  for (const Quadcode node : others)
-    list.uploads.push_back(scene_.AddTerrain(node, [](double, double) { return 0.0; }));
+  for (const Quadcode node : others) list.uploads.push_back(scene_.AddOverlay(node, 9));
   stage_->channel->terrain_lists.Publish();
   for (uint64_t i = 0; i <= SlotPool::kGraceFrames + 1; ++i) stage_->Frame();
   EXPECT_TRUE(OnGpu(first[0]) && OnGpu(first[1]));
   EXPECT_FALSE(OnGpu(first[2]) || OnGpu(first[3]));
   EXPECT_EQ(CountOnGpu(others), 2);
   EXPECT_EQ(stage_->channel->frame.Get()->uploads_pending, 2U);
-  EXPECT_GT(stage_->renderer->pages().terrain_pool().refused(), 0U);
+  EXPECT_GT(stage_->renderer->pages().overlay_pool().refused(), 0U);
 }
 
 TEST_F(Uploads, ImageSlotsSayWhichFormatTheyAreOf) {

@@ -149,38 +149,47 @@ inline int PinInto(DisplayList& list, PagePin pin) {
 // Draws quadnodes of one level as grids of every `step`th post. A post on the east or north border is the neighbour's
 // where that is drawn too: shared posts are shared numbers, as in the lists of a terrain manager.
 inline void AddSurface(DisplayList& list, Scene& scene, const std::vector<Quadcode>& nodes, int step) {
-  std::map<std::pair<int64_t, int64_t>, int> slots;  // by column and row
+  std::map<std::pair<int64_t, int64_t>, uint32_t> first_vertices;  // by column and row
   std::vector<BoundingSphere> volumes;
+  const auto first_draw = static_cast<uint32_t>(list.terrain_draws.size());
+  const int across = kCells / step + 1;
   for (const Quadcode node : nodes) {
     PagePin pin = scene.Find(scene.terrain_type(), node);
-    const TerrainPage* page = &pin.as<TerrainPage>();
-    volumes.push_back({page->center_ecef, page->radius_m});
-    const int slot = PinInto(list, std::move(pin));
-    BELVEDERE_CHECK(slot >= 0);
-    slots[{node.column(), node.row()}] = slot;
-    list.slots.push_back({page, slot, FrameIndex(list, node), node.SouthWest(), node.PostSpacing()});
+    const TerrainPage& page = pin.as<TerrainPage>();
+    volumes.push_back({page.center_ecef, page.radius_m});
+    first_vertices[{node.column(), node.row()}] = static_cast<uint32_t>(list.vertices.size());
+    const uint32_t draw = first_draw + static_cast<uint32_t>(first_vertices.size()) - 1;
+    for (int row = 0; row < kPosts; row += step) {
+      for (int column = 0; column < kPosts; column += step) {
+        const auto post = static_cast<uint32_t>(row * kPosts + column);
+        const TerrainVertex& v = page.vertices[post];
+        list.vertices.push_back({v.x, v.y, v.z, v.normal, ListVertex::PlaceOf(draw, post), 0.0F});
+      }
+    }
+    list.page_pins.push_back(std::move(pin));
   }
   for (size_t i = 0; i < nodes.size(); ++i) {
     const Quadcode node = nodes[i];
     const auto number = [&](int column, int row) {
       int64_t east = column == kCells ? 1 : 0;
       int64_t north = row == kCells ? 1 : 0;
-      if (!slots.contains({node.column() + east, node.row() + north})) {
-        if (east != 0 && slots.contains({node.column() + 1, node.row()})) {
+      if (!first_vertices.contains({node.column() + east, node.row() + north})) {
+        if (east != 0 && first_vertices.contains({node.column() + 1, node.row()})) {
           north = 0;
-        } else if (north != 0 && slots.contains({node.column(), node.row() + 1})) {
+        } else if (north != 0 && first_vertices.contains({node.column(), node.row() + 1})) {
           east = 0;
         } else {
           east = north = 0;
         }
       }
-      const int slot = slots.at({node.column() + east, node.row() + north});
       const int own_column = east != 0 ? 0 : column;
       const int own_row = north != 0 ? 0 : row;
-      return static_cast<uint32_t>(slot * kVerticesPerPage + own_row * kPosts + own_column);
+      return first_vertices.at({node.column() + east, node.row() + north}) +
+             static_cast<uint32_t>(own_row / step * across + own_column / step);
     };
     TerrainDraw draw;
     draw.node = node;
+    draw.frame = FrameIndex(list, node);
     draw.first_index = static_cast<uint32_t>(list.indices.size());
     for (int row = 0; row < kCells; row += step) {
       for (int column = 0; column < kCells; column += step) {

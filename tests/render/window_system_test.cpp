@@ -26,7 +26,7 @@ TEST(WindowSystem, ShowsViewsInTwoWindows) {
   WindowSystem& windows = **made;
   Scene scene;
   RenderOptions options;
-  options.terrain_slots = options.colour_slots = options.overlay_slots = 4;
+  options.colour_slots = options.overlay_slots = 4;
   auto thread = RenderThread::Start(options, scene.layers(), Clock::System(), windows.SharedContext());
   ASSERT_TRUE(thread.ok()) << thread.message();
 
