@@ -202,7 +202,8 @@ class Selection {
     drawn.finest = branch.geometry_ratio <= 1.0;
     drawn.visible = measure.share >= 1.0;
     for (size_t i = 0; i < std::min(view_.image_layers.size(), size_t{kMaxImageLayers}); ++i) {
-      drawn.images[i] = ChooseImage(view_.image_layers[i], branch.node, measure);
+      const LayerUse& layer = view_.image_layers[i];
+      if (layer.shown()) drawn.images[i] = ChooseImage(layer.type, branch.node, measure);
     }
     if (drawn.visible && !drawn.finest) {
       cut_.left_over_error_px = std::max(cut_.left_over_error_px, branch.page->error_m * measure.error_metre_px);
@@ -215,8 +216,9 @@ class Selection {
   double TextureRatio(Quadcode node, const Measure& measure) const {
     if (node.level() >= kMaxLevel) return 0;
     const Quadcode child = node.Child(0);
-    const bool finer = std::any_of(view_.image_layers.begin(), view_.image_layers.end(), [&](DataType type) {
-      return child.level() <= layers_.at(type).max_level && layers_.at(type).exists(child);
+    const bool finer = std::any_of(view_.image_layers.begin(), view_.image_layers.end(), [&](const LayerUse& use) {
+      const Layer& layer = layers_.at(use.type);
+      return use.shown() && child.level() <= layer.max_level && layer.exists(child);
     });
     return finer ? TexelRatio(node.level(), measure) : 0.0;
   }

@@ -3,6 +3,9 @@
 #include "render/shader_sources.h"
 #include "render/view_block.h"
 #include "runtime/base/status.h"
+#include "runtime/earth/ellipsoid.h"
+
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -22,9 +25,15 @@ struct DrawRow {
   std::array<float, 2> unused{};
   std::array<glm::vec4, kMaxImageLayers> image{};
 };
-static_assert(sizeof(DrawRow) == 80);
+static_assert(sizeof(DrawRow) == 128);
 static_assert(sizeof(FrameRow) == 128);
 static_assert(sizeof(ListVertex) == 24);
+
+constexpr uint8_t ModeOf(LayerRole role) {
+  return static_cast<uint8_t>(static_cast<int>(role) + 1);
+}
+
+constexpr double kLightsOff = 0.08;  // sine of the sun's elevation, as in shaders/terrain.vert.glsl
 
 template <typename T>
 void Send(const GlBuffer& buffer, const std::vector<T>& rows) {
@@ -37,11 +46,19 @@ void Send(const GlBuffer& buffer, const std::vector<T>& rows) {
 GLuint TerrainPrograms::For(const Layers& layers) {
   GlProgram& program = programs_[layers];
   if (!program) {
-    const auto overlays = std::count(layers.begin(), layers.end(), uint8_t{2});
     std::string defines;
-    for (size_t i = 0; i < layers.size(); ++i) defines += fmt::format("#define LAYER{} {}\n", i, layers[i]);
-    defines += fmt::format("#define OVERLAYS {}\n#define SLOPES {}\n", std::min<std::ptrdiff_t>(overlays, 2),
-                           overlays == 0 ? 1 : 0);
+    const auto count_of = [&](LayerRole role) {
+      return std::count_if(layers.begin(), layers.end(),
+                           [&](const LayerMode& layer) { return layer.role == ModeOf(role); });
+    };
+    for (size_t i = 0; i < layers.size(); ++i) {
+      defines += fmt::format("#define LAYER{0} {1}\n#define SINGLE{0} {2}\n#define ADJUST{0} {3}\n", i, layers[i].role,
+                             layers[i].single ? 1 : 0, layers[i].adjusted ? 1 : 0);
+    }
+    const auto multipliers = count_of(LayerRole::kMultiply);
+    defines += fmt::format("#define MULTIPLIERS {}\n#define SLOPES {}\n#define NIGHT {}\n#define WATER {}\n",
+                           multipliers, multipliers == 0 ? 1 : 0, count_of(LayerRole::kNight) > 0 ? 1 : 0,
+                           count_of(LayerRole::kWater) > 0 ? 1 : 0);
     const std::string common = std::string(shaders::kView) + std::string(shaders::kAtmosphere);
     program = MakeProgram("terrain", common + std::string(shaders::kTerrainVert),
                           common + std::string(shaders::kTerrainFrag), defines);
@@ -79,11 +96,19 @@ TerrainPass::TerrainPass(const GpuPages& pages, TerrainPrograms& programs)
   glVertexArrayElementBuffer(array, indices_.get());
 }
 
-TerrainPass::Layers TerrainPass::LayersOf(const TerrainDraw& draw) const {
+TerrainPass::Layers TerrainPass::LayersOf(uint32_t draw, std::span<const ImageUse> images,
+                                          std::span<const LayerUse> uses, const glm::dvec3& sun_ecef) const {
   Layers layers{};
-  for (size_t i = 0; i < layers.size(); ++i) {
-    const int slot = draw.images[i].slot;
-    if (slot >= 0) layers[i] = pages_.IsColour(slot) ? 1 : 2;
+  const double sun_sine = glm::dot(middles_[draw].up_ecef, sun_ecef);
+  const double reach = middles_[draw].reach;
+  for (size_t i = 0; i < std::min(images.size(), uses.size()); ++i) {
+    const LayerUse& use = uses[i];
+    if (images[i].slot < 0 || !use.shown()) continue;
+    // Neither costs anything where it cannot be seen.
+    if (use.role == LayerRole::kNight && sun_sine - reach > kLightsOff) continue;
+    if (use.role == LayerRole::kWater && sun_sine + reach < 0) continue;
+    layers[i] = {ModeOf(use.role), !pages_.IsColour(images[i].slot),
+                 use.opacity != 1 || use.gamma != 1 || use.multiplier != 1};
   }
   return layers;
 }
@@ -97,7 +122,7 @@ void TerrainPass::SetList(const DisplayList& list) {
 void TerrainPass::SetDraws(const DisplayList& list) {
   std::vector<DrawRow> rows;
   rows.reserve(list.terrain_draws.size());
-  layers_of_draw_.clear();
+  middles_.clear();
   for (const TerrainDraw& draw : list.terrain_draws) {
     const GridPoint corner = draw.node.SouthWest();
     BELVEDERE_CHECK(draw.frame < list.frames.size());
@@ -114,12 +139,11 @@ void TerrainPass::SetDraws(const DisplayList& list) {
       row.image[i] = {use.offset_u, use.offset_v, use.scale, static_cast<float>(pages_.ArrayLayer(use.slot))};
     }
     rows.push_back(row);
-    layers_of_draw_.push_back(LayersOf(draw));
+    const GeoBox box = draw.node.Box();
+    middles_.push_back({UpAt(0.5 * (box.south_deg + box.north_deg), 0.5 * (box.west_deg + box.east_deg)),
+                        0.75 * draw.node.SizeDegrees() * kRadiansPerDegree});
   }
   Send(draws_, rows);
-  layers_met_ = layers_of_draw_;
-  std::sort(layers_met_.begin(), layers_met_.end());
-  layers_met_.erase(std::unique(layers_met_.begin(), layers_met_.end()), layers_met_.end());
   if (rows.size() > numbered_draws_) {
     std::vector<uint32_t> numbers(rows.size() * 2);
     std::iota(numbers.begin(), numbers.end(), 0U);
@@ -136,21 +160,29 @@ void TerrainPass::SetMatrices(const DisplayList& list, const ViewMatrices& matri
   Send(frames_, rows);
 }
 
-void TerrainPass::Draw(const DisplayList& list, std::span<const uint32_t> draws, const ViewMatrices& matrices) {
+void TerrainPass::Draw(const DisplayList& list, std::span<const uint32_t> draws, const ViewMatrices& matrices,
+                       std::span<const LayerUse> uses, const glm::dvec3& sun_ecef) {
   if (draws.empty()) return;
   SetMatrices(list, matrices);
   glBindVertexArray(vertex_array_.get());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, frames_.get());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, draws_.get());
   pages_.BindImages();
+  layers_of_draw_.clear();
+  for (const uint32_t number : draws) {
+    layers_of_draw_.push_back(LayersOf(number, list.terrain_draws[number].images, uses, sun_ecef));
+  }
+  layers_met_ = layers_of_draw_;
+  std::sort(layers_met_.begin(), layers_met_.end());
+  layers_met_.erase(std::unique(layers_met_.begin(), layers_met_.end()), layers_met_.end());
   for (const Layers& layers : layers_met_) {
     glUseProgram(programs_.For(layers));
-    for (const uint32_t number : draws) {
-      if (layers_of_draw_[number] != layers) continue;
-      const TerrainDraw& draw = list.terrain_draws[number];
+    for (size_t i = 0; i < draws.size(); ++i) {
+      if (layers_of_draw_[i] != layers) continue;
+      const TerrainDraw& draw = list.terrain_draws[draws[i]];
       const void* first = reinterpret_cast<const void*>(draw.first_index * sizeof(uint32_t));
       glDrawElementsInstancedBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(draw.index_count), GL_UNSIGNED_INT, first,
-                                          1, number);
+                                          1, draws[i]);
     }
   }
 }

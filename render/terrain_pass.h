@@ -12,6 +12,7 @@
 #include "runtime/scene/view_parameters.h"
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -22,8 +23,14 @@ namespace belvedere {
 // The programs, one for each combination of layers that is met; shared by all views.
 class TerrainPrograms {
  public:
-  // layers: of each image that a quadnode has, 0 none, 1 colour, 2 overlay.
-  using Layers = std::array<uint8_t, kMaxImageLayers>;
+  // What the program does with each image that a quadnode has.
+  struct LayerMode {
+    uint8_t role = 0;       // 0 nothing, or LayerRole + 1
+    bool single = false;    // one channel
+    bool adjusted = false;  // opacity, gamma and multiplier are not all 1
+    auto operator<=>(const LayerMode&) const = default;
+  };
+  using Layers = std::array<LayerMode, kMaxImageLayers>;
   GLuint For(const Layers& layers);
 
  private:
@@ -36,12 +43,14 @@ class TerrainPass {
 
   // The list is drawn from now on. REQUIRES: it stays as it is until the next SetList.
   void SetList(const DisplayList& list);
-  // draws: indices of the list's terrain_draws.
-  void Draw(const DisplayList& list, std::span<const uint32_t> draws, const ViewMatrices& matrices);
+  // draws: indices of the list's terrain_draws. Layers are shown as `uses` says now.
+  void Draw(const DisplayList& list, std::span<const uint32_t> draws, const ViewMatrices& matrices,
+            std::span<const LayerUse> uses, const glm::dvec3& sun_ecef);
 
  private:
   using Layers = TerrainPrograms::Layers;
-  Layers LayersOf(const TerrainDraw& draw) const;
+  Layers LayersOf(uint32_t draw, std::span<const ImageUse> images, std::span<const LayerUse> uses,
+                  const glm::dvec3& sun_ecef) const;
   void SetDraws(const DisplayList& list);
   void SetMatrices(const DisplayList& list, const ViewMatrices& matrices);
 
@@ -50,6 +59,12 @@ class TerrainPass {
   GlVertexArray vertex_array_;
   GlBuffer vertices_, indices_, draw_numbers_, frames_, draws_;
   size_t numbered_draws_ = 0;
+  struct Middle {
+    glm::dvec3 up_ecef;
+    double reach;  // how far the vertical turns from there within the quadnode, radians
+  };
+  std::vector<Middle> middles_;  // of the list's draws
+  // Of the draws of one Draw.
   std::vector<Layers> layers_of_draw_;
   std::vector<Layers> layers_met_;
 };

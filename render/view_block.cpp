@@ -44,6 +44,10 @@ ViewBlock MakeViewBlock(const ViewParameters& view, const ViewMatrices& matrices
   const auto width = static_cast<float>(view.width_px);
   const auto height = static_cast<float>(view.height_px);
   block.viewport_px = {width, height, 1.0F / width, 1.0F / height};
+  for (size_t i = 0; i < std::min(view.image_layers.size(), block.layers.size()); ++i) {
+    const LayerUse& layer = view.image_layers[i];
+    block.layers[i] = {layer.opacity, layer.gamma, layer.multiplier, 0.0F};
+  }
   block.moment = {static_cast<float>(std::clamp(since_list_s, 0.0, kLongest_s)), 0.0F, 0.0F, 0.0F};
   return block;
 }

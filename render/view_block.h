@@ -4,6 +4,7 @@
 #pragma once
 
 #include "runtime/earth/frame.h"
+#include "runtime/scene/display_list.h"
 #include "runtime/scene/view_parameters.h"
 
 #include <glm/mat4x4.hpp>
@@ -20,6 +21,7 @@ struct ViewBlock {
   std::array<glm::vec4, 3> ray_ecef;
   glm::vec4 viewport_px;
   glm::vec4 moment;
+  std::array<glm::vec4, kMaxImageLayers> layers;
 };
 // since_list_s: since the terrain list was made.
 ViewBlock MakeViewBlock(const ViewParameters& view, const ViewMatrices& matrices, const glm::dvec3& sun_ecef,

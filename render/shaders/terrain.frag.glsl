@@ -1,37 +1,99 @@
-// Ground: images over each other, times light, plus air. LAYERn: 0 no image, 1 colour, 2 overlay.
+// Ground: images over each other, times light, plus air. LAYERn: 0 no image, or what the image does (LayerRole + 1);
+// SINGLEn: it is of the pages with one channel; ADJUSTn: its opacity, gamma or multiplier are not all 1.
 layout(binding = 0) uniform sampler2DArray colour_pages;
 layout(binding = 1) uniform sampler2DArray overlay_pages;
 
 in vec4 shade;
 in vec4 uv01;
 flat in vec3 pages;
-#if LAYER2 != 0
-in vec2 uv2;
+#if LAYER2 != 0 || LAYER3 != 0
+in vec4 uv23;
+#endif
+#if LAYER3 != 0 || LAYER4 != 0 || LAYER5 != 0
+flat in vec3 more_pages;
+#endif
+#if LAYER4 != 0 || LAYER5 != 0
+in vec4 uv45;
+#endif
+#if NIGHT
+in float dark;                                 // share of a light on the ground that reaches the eye, by day none
+#endif
+#if WATER
+in vec3 to_eye;
+in vec4 up_sun;                                // xyz: upwards; w: share of the sun's light that is mirrored and arrives
 #endif
 layout(location = 0) out vec3 colour;
 
+const int kColour = 1, kGrey = 2, kMultiply = 3, kNight = 4;
 const vec3 kBareGround = vec3(0.72, 0.73, 0.70);
+const vec3 kLuminance = vec3(0.2126, 0.7152, 0.0722);
+
+vec3 ground = kBareGround;
+vec3 lights = vec3(0.0);
+float water = 0.0;
+
+// All but uv, page and how are constants where it is called.
+void Lay(int role, int single, int adjusted, vec2 uv, float page, vec4 how) {
+  vec4 texel = single != 0 ? vec4(texture(overlay_pages, vec3(uv, page)).rrr, 1.0)
+                           : texture(colour_pages, vec3(uv, page));
+  if (role == kGrey) texel.rgb = vec3(dot(texel.rgb, kLuminance));
+  float opacity = 1.0;
+  if (adjusted != 0) {
+    opacity = how.x;
+    texel.rgb = how.z * pow(texel.rgb, vec3(how.y));
+  }
+  if (role == kColour || role == kGrey) {
+    ground = mix(ground, texel.rgb, texel.a * opacity);
+  } else if (role == kMultiply) {
+    ground *= adjusted != 0 ? mix(0.5, texel.r, opacity) : texel.r;
+  } else if (role == kNight) {
+    lights += opacity * texel.a * texel.rgb;
+  } else {
+    water = opacity * texel.r;
+  }
+}
+
+#if WATER
+// The sun in waves. Share of the facets that mirror it towards the eye: Cox and Munk, "Measurement of the roughness of
+// the sea surface from photographs of the sun's glitter" (1954), for a fresh breeze; Fresnel's share as Schlick has it.
+float Glint() {
+  const float kMeanSquareSlope = 0.03;
+  vec3 eye = normalize(to_eye);
+  vec3 up = normalize(up_sun.xyz);
+  vec3 facet = normalize(eye + sun_ecef.xyz);
+  float c = max(dot(up, facet), 0.05);
+  float tan2 = 1.0 / (c * c) - 1.0;
+  float slopes = exp2(-1.442695 * tan2 / kMeanSquareSlope) / (kMeanSquareSlope * c * c * c * c);
+  float f = 1.0 - max(dot(facet, eye), 0.0);
+  float fresnel = 0.02 + 0.98 * f * f * f * f * f;
+  return min(fresnel * slopes / (4.0 * max(dot(up, eye), 0.1)), 1.0);
+}
+#endif
 
 void main() {
-  vec3 ground = kBareGround;
-  vec4 texel;
-#if LAYER0 == 1
-  texel = texture(colour_pages, vec3(uv01.xy, pages.x));
-  ground = mix(ground, texel.rgb, texel.a);
-#elif LAYER0 == 2
-  ground *= texture(overlay_pages, vec3(uv01.xy, pages.x)).r;
+#if LAYER0 != 0
+  Lay(LAYER0, SINGLE0, ADJUST0, uv01.xy, pages.x, layers[0]);
 #endif
-#if LAYER1 == 1
-  texel = texture(colour_pages, vec3(uv01.zw, pages.y));
-  ground = mix(ground, texel.rgb, texel.a);
-#elif LAYER1 == 2
-  ground *= texture(overlay_pages, vec3(uv01.zw, pages.y)).r;
+#if LAYER1 != 0
+  Lay(LAYER1, SINGLE1, ADJUST1, uv01.zw, pages.y, layers[1]);
 #endif
-#if LAYER2 == 1
-  texel = texture(colour_pages, vec3(uv2, pages.z));
-  ground = mix(ground, texel.rgb, texel.a);
-#elif LAYER2 == 2
-  ground *= texture(overlay_pages, vec3(uv2, pages.z)).r;
+#if LAYER2 != 0
+  Lay(LAYER2, SINGLE2, ADJUST2, uv23.xy, pages.z, layers[2]);
+#endif
+#if LAYER3 != 0
+  Lay(LAYER3, SINGLE3, ADJUST3, uv23.zw, more_pages.x, layers[3]);
+#endif
+#if LAYER4 != 0
+  Lay(LAYER4, SINGLE4, ADJUST4, uv45.xy, more_pages.y, layers[4]);
+#endif
+#if LAYER5 != 0
+  Lay(LAYER5, SINGLE5, ADJUST5, uv45.zw, more_pages.z, layers[5]);
 #endif
   colour = ground * shade.x + shade.yzw;
+#if NIGHT
+  colour += lights * dark;
+#endif
+#if WATER
+  if (water > 0.01) colour += vec3(1.0, 0.95, 0.85) * (water * up_sun.w * Glint());
+#endif
 }

@@ -20,7 +20,7 @@ struct DrawRow {
   float per_grid_unit;                         // 1 / side of the quadnode
   float per_rise_s;
   vec2 unused;
-  vec4 image[3];                               // offset u, offset v, scale, array layer
+  vec4 image[6];                               // offset u, offset v, scale, array layer
 };
 layout(std430, binding = 0) readonly buffer Frames { FrameRow frames[]; };
 layout(std430, binding = 1) readonly buffer Draws { DrawRow draws[]; };
@@ -30,8 +30,21 @@ invariant gl_Position;
 out vec4 shade;                                // x: what the ground's colour is multiplied by; yzw: air added to it
 out vec4 uv01;
 flat out vec3 pages;
-#if LAYER2 != 0
-out vec2 uv2;
+#if LAYER2 != 0 || LAYER3 != 0
+out vec4 uv23;
+#endif
+#if LAYER3 != 0 || LAYER4 != 0 || LAYER5 != 0
+flat out vec3 more_pages;
+#endif
+#if LAYER4 != 0 || LAYER5 != 0
+out vec4 uv45;
+#endif
+#if NIGHT
+out float dark;
+#endif
+#if WATER
+out vec3 to_eye;
+out vec4 up_sun;
 #endif
 
 vec3 NormalInFrame() {
@@ -76,25 +89,34 @@ void main() {
 #endif
 
   // Air between the ground and the eye: the density met, averaged over the way, and never more than the curved air holds.
-  vec3 to_eye = eye_scaled.xyz - scaled;
-  float distance_m = length(to_eye) * kEarthRadius_m;
+  vec3 eyewards = eye_scaled.xyz - scaled;
+  float distance_m = length(eyewards) * kEarthRadius_m;
   float climb = (eye_scaled.w - height_m) * (1.0 / kScaleHeight_m);
   float density = Density(height_m);
   float mean_share = abs(climb) < 0.05 ? 1.0 : (1.0 - exp2(-1.442695 * climb)) / climb;
-  float rise = dot(up, to_eye) * kEarthRadius_m / max(distance_m, 1.0);
+  float rise = dot(up, eyewards) * kEarthRadius_m / max(distance_m, 1.0);
   float path_m = min(distance_m * mean_share, kScaleHeight_m / (max(rise, 0.0) + 0.012));
   float depth = kGroundShare * kZenithDepth / kScaleHeight_m * density * path_m;
   vec3 veil = Airlight(depth, kGroundScatter);
-#if OVERLAYS == 1
-  day *= 2.0;                                  // an overlay of 0.5 leaves the colour as it is
-#elif OVERLAYS == 2
-  day *= 4.0;
-#endif
+  day *= float(1 << MULTIPLIERS);              // a layer of 0.5 that multiplies leaves the colour as it is
   shade = vec4(day * (1.0 - veil.g), veil * SunColour(8.0 * depth, sun_sine) * DaySky(sun_sine));
 
   uv01 = vec4(ImageCoordinate(draws[draw_number].image[0], local), ImageCoordinate(draws[draw_number].image[1], local));
-#if LAYER2 != 0
-  uv2 = ImageCoordinate(draws[draw_number].image[2], local);
+#if LAYER2 != 0 || LAYER3 != 0
+  uv23 = vec4(ImageCoordinate(draws[draw_number].image[2], local), ImageCoordinate(draws[draw_number].image[3], local));
+#endif
+#if LAYER3 != 0 || LAYER4 != 0 || LAYER5 != 0
+  more_pages = vec3(draws[draw_number].image[3].w, draws[draw_number].image[4].w, draws[draw_number].image[5].w);
+#endif
+#if LAYER4 != 0 || LAYER5 != 0
+  uv45 = vec4(ImageCoordinate(draws[draw_number].image[4], local), ImageCoordinate(draws[draw_number].image[5], local));
+#endif
+#if NIGHT
+  dark = smoothstep(-0.08, 0.12, -sun_sine) * (1.0 - veil.g);  // lights are on from a little before sunset
+#endif
+#if WATER
+  to_eye = eyewards;
+  up_sun = vec4(up, smoothstep(0.0, 0.08, sun_sine) * (1.0 - veil.g));
 #endif
   pages = vec3(draws[draw_number].image[0].w, draws[draw_number].image[1].w, draws[draw_number].image[2].w);
 }

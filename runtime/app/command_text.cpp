@@ -1,5 +1,6 @@
 #include "runtime/app/command_text.h"
 
+#include "runtime/app/layer_text.h"
 #include "runtime/app/settings.h"
 
 #include <array>
@@ -75,6 +76,13 @@ std::optional<Command> ParseToggle(const Words& words) {
   return ToggleCommand{found->second};
 }
 
+std::optional<Command> ParseLayer(const Words& words) {
+  if (words.size() != 3) return std::nullopt;
+  LayerUse unused;
+  if (words[2] != "toggle" && !ApplyLayerSetting(words[2], unused).ok()) return std::nullopt;
+  return LayerCommand{std::string(words[1]), std::string(words[2])};
+}
+
 std::optional<Command> ParseTarget(const Words& words) {
   if (words.size() != 2 || (words[1] != "next" && words[1] != "previous")) return std::nullopt;
   return CycleTargetCommand{words[1] == "next" ? 1 : -1};
@@ -144,6 +152,9 @@ const std::map<std::string_view, Form>& Forms() {
       {"toggle",
        {"toggle hud, labels, objects, symbols, sky, wireframe or frozen",
         [](const Words& words, const PicturePoint&) { return ParseToggle(words); }}},
+      {"layer",
+       {"layer NAME|NUMBER toggle|on|off|opacity=0..1|gamma=0.1..10|multiplier=0..100|role=ROLE",
+        [](const Words& words, const PicturePoint&) { return ParseLayer(words); }}},
       {"target",
        {"target next or target previous", [](const Words& words, const PicturePoint&) { return ParseTarget(words); }}},
       {"picture", {"picture", Alone<PictureCommand>()}},

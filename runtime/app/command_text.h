@@ -3,6 +3,7 @@
 //   zoom STEPS                 look RIGHT UP (fractions of the picture)     orbit AROUND_DEG TILT_DEG
 //   fly FORWARD RIGHT UP [TURN PITCH]      goto LAT LON HEIGHT_M [HEADING PITCH]      home
 //   error PX        error *FACTOR          toggle hud|labels|objects|symbols|sky|wireframe|frozen
+//   layer NAME|NUMBER toggle|on|off|opacity=X|gamma=X|multiplier=X|role=ROLE
 //   target next|previous                   time +SECONDS|-SECONDS           picture       quit
 //
 // zoom and orbit act on the middle of the picture. What a mouse does (grab, pan) has no written form.

@@ -31,6 +31,7 @@ struct TourOptions {
   bool headless = false;
   std::string frames_folder;
   int every = 30;
+  std::vector<std::string> layers;
   int redraw_points = 0;  // where the tour pauses to draw the same lists again
   double seconds = 0;     // 0: the whole path
   int64_t cache_MiB = 512;

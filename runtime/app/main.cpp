@@ -44,6 +44,13 @@ void AddRun(CLI::App& program, RunOptions& options) {
   command->add_option("--trace", options.trace, "write a trace of what each thread did");
 }
 
+void AddLayers(CLI::App& command, std::vector<std::string>& layers) {
+  command
+      .add_option("--layers", layers,
+                  "image layers, the lowest first: NAME[:opacity=X][:gamma=X][:multiplier=X][:role=R]")
+      ->delimiter(',');
+}
+
 void AddTour(CLI::App& program, TourOptions& options, Texts& texts) {
   CLI::App* command = program.add_subcommand("tour", "Flies a camera path in real time and reports what it measured");
   command->add_option("DATASET", options.dataset, "dataset folder")->required();
@@ -64,6 +71,7 @@ void AddTour(CLI::App& program, TourOptions& options, Texts& texts) {
   command->add_option("--traffic", options.traffic, "synthetic moving objects, over a loopback socket")
       ->check(CLI::Range(0, 100'000));
   command->add_flag("--headless", options.headless, "off-screen, also where there is a display");
+  AddLayers(*command, options.layers);
   command->add_option("--frames", options.frames_folder, "folder for pictures of the first view");
   command->add_option("--every", options.every, "a picture every so many frames")
       ->check(CLI::Range(1, 1'000'000))
@@ -107,7 +115,7 @@ void AddSnapshot(CLI::App& program, SnapshotOptions& options, Texts& texts) {
   command->add_option("--size", texts.size)->check(SizeText())->capture_default_str();
   command->add_option("--error-px", options.error_px)->check(CLI::Range(0.1, 100.0))->capture_default_str();
   command->add_option("--texel-px", options.texel_px)->check(CLI::Range(0.25, 100.0))->capture_default_str();
-  command->add_option("--layers", options.layers, "image layers, colour first")->delimiter(',');
+  AddLayers(*command, options.layers);
   command->add_option("--exaggeration", options.exaggeration, "of heights")
       ->check(CLI::Range(0.1, 100.0))
       ->capture_default_str();

@@ -18,7 +18,7 @@ constexpr size_t kTraceEvents = size_t{1} << 18;
 constexpr std::chrono::milliseconds kLook{4};  // how often the frame reports are looked at
 constexpr ViewId kView = 1;
 
-ViewParameters ParametersOf(const SnapshotOptions& options, std::vector<DataType> layers, double now_s) {
+ViewParameters ParametersOf(const SnapshotOptions& options, std::vector<LayerUse> layers, double now_s) {
   const CameraPose pose{options.position, options.heading_deg, options.pitch_deg, options.roll_deg, options.vfov_deg};
   ViewParameters view;
   view.view = kView;
@@ -103,11 +103,11 @@ int TakeSnapshot(const SnapshotOptions& options) {
   const Clock& clock = Clock::System();
   Result<std::unique_ptr<Station>> station = Station::Start(rooms, clock, std::move(*context));
   if (!station.ok()) return CouldNot(station.status());
-  const Result<std::vector<DataType>> layers = (*station)->ImageLayers(options.layers);
+  const Result<std::vector<NamedLayer>> layers = (*station)->ImageLayers(options.layers);
   if (!layers.ok()) return CouldNot(layers.status());
 
   const double start_s = SecondsSinceStart();
-  const ViewChannel& channel = (*station)->AddView(ParametersOf(options, *layers, clock.NowSeconds()), nullptr);
+  const ViewChannel& channel = (*station)->AddView(ParametersOf(options, UsesOf(*layers), clock.NowSeconds()), nullptr);
   const Result<Picture> picture = WaitForPicture(**station, channel, options);
   if (!picture.ok()) return CouldNot(picture.status());
   const double settled_s = SecondsSinceStart() - start_s;

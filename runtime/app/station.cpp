@@ -92,34 +92,10 @@ Station::~Station() {
   servers_.reset();
 }
 
-Result<std::vector<DataType>> Station::ImageLayers(const std::vector<std::string>& names) const {
-  std::vector<DataType> types;
-  if (names.empty()) {
-    const Layer* colour = paging_->layers.FirstOf(PageKind::kColour);
-    if (colour != nullptr) types.push_back(colour->type);
-    for (const Layer& layer : paging_->layers.layers()) {
-      if (layer.kind == PageKind::kOverlay && types.size() < kMaxImageLayers) types.push_back(layer.type);
-    }
-    return types;
-  }
-  std::vector<std::string> known;
-  for (const Layer& layer : paging_->layers.layers()) {
-    if (layer.kind == PageKind::kColour || layer.kind == PageKind::kOverlay) known.push_back(layer.name);
-  }
-  if (names.size() > kMaxImageLayers) {
-    return Status::Error("{} image layers asked for, but at most {} are drawn over each other", names.size(),
-                         kMaxImageLayers);
-  }
-  for (const std::string& name : names) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) {
-      const std::string nearest = NearestWord(name, known);
-      return Status::Error("{}: no image layer is called \"{}\"; {}", dataset_->path(), name,
-                           nearest.empty() ? fmt::format("there are {}", fmt::join(known, ", "))
-                                           : fmt::format("did you mean {}?", nearest));
-    }
-    types.push_back(paging_->layers.Find(name)->type);
-  }
-  return types;
+Result<std::vector<NamedLayer>> Station::ImageLayers(const std::vector<std::string>& texts) const {
+  Result<std::vector<NamedLayer>> layers = LayersOf(texts, paging_->layers);
+  if (!layers.ok()) return Status::Error("{}: {}", dataset_->path(), layers.message());
+  return layers;
 }
 
 ViewChannel& Station::AddView(const ViewParameters& first, Presenter* presenter) {

@@ -15,6 +15,7 @@
 #include "render/render_thread.h"
 #include "runtime/app/catalogue_file.h"
 #include "runtime/app/ground.h"
+#include "runtime/app/layer_text.h"
 #include "runtime/app/station_file.h"
 #include "runtime/paging/dataset.h"
 #include "servers/page_server.h"
@@ -44,9 +45,8 @@ class Station {
   Station(const Station&) = delete;
   Station& operator=(const Station&) = delete;
 
-  // Data types of the named image layers, to be drawn in that order; with no names the first colour layer and every
-  // overlay, as many as fit.
-  Result<std::vector<DataType>> ImageLayers(const std::vector<std::string>& names) const;
+  // The image layers that the texts name (layer_text.h); with none, those that a view has unless it says otherwise.
+  Result<std::vector<NamedLayer>> ImageLayers(const std::vector<std::string>& texts) const;
 
   // first: the view's parameters until others are published, with the number that the view is to have.
   ViewChannel& AddView(const ViewParameters& first, Presenter* presenter);

@@ -32,7 +32,7 @@ struct ViewSpec {
   Tether tether;
   Overview overview;
 
-  std::vector<std::string> layers;  // image layers by name, colour first; empty: all that there are
+  std::vector<std::string> layers;  // image layers in their written form (layer_text.h)
   double error_px = 2.0, texel_px = 1.25;
   bool hud = true, labels = true, objects = true, symbols = false, sky = true;
 };

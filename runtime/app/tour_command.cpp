@@ -88,7 +88,7 @@ class Tour {
   std::vector<WindowId> window_ids_;
   std::unique_ptr<Station> station_;
   std::unique_ptr<dis::TrafficSender> traffic_;
-  std::vector<DataType> layers_;
+  std::vector<LayerUse> layers_;
   std::vector<ViewChannel*> channels_;
   uint64_t number_ = 0;
   std::vector<FrameSample> samples_;
@@ -142,9 +142,9 @@ Status Tour::Start() {
     if (!traffic.ok()) return traffic.status();
     traffic_ = std::move(*traffic);
   }
-  Result<std::vector<DataType>> layers = station_->ImageLayers({});
+  const Result<std::vector<NamedLayer>> layers = station_->ImageLayers(options_.layers);
   if (!layers.ok()) return layers.status();
-  layers_ = std::move(*layers);
+  layers_ = UsesOf(*layers);
   for (int view = 0; view < options_.views; ++view) {
     const Result<Presenter*> presenter = MakePresenter(view);
     if (!presenter.ok()) return presenter.status();

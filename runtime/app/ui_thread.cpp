@@ -44,7 +44,7 @@ Status UiThread::OpenViews() {
 }
 
 Status UiThread::OpenView(const WindowSpec& window) {
-  Result<std::vector<DataType>> layers = station_.ImageLayers(window.view.layers);
+  Result<std::vector<NamedLayer>> layers = station_.ImageLayers(window.view.layers);
   if (!layers.ok()) return Status::Error("{}: window \"{}\": {}", spec_.file, window.title, layers.message());
   View view;
   view.id = static_cast<ViewId>(views_.size() + 1);

@@ -3,6 +3,7 @@
 #include "runtime/earth/ellipsoid.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 #include <variant>
 
@@ -18,7 +19,7 @@ Overloaded(Visitors...) -> Overloaded<Visitors...>;
 
 }  // namespace
 
-ViewPilot::ViewPilot(ViewId view, const WindowSpec& window, std::vector<DataType> image_layers)
+ViewPilot::ViewPilot(ViewId view, const WindowSpec& window, std::vector<NamedLayer> image_layers)
     : view_(view),
       spec_(window.view),
       image_layers_(std::move(image_layers)),
@@ -150,9 +151,24 @@ void ViewPilot::ApplySwitches(const Command& command) {
       case ViewSwitch::kFrozen: frozen_ = !frozen_; break;
     }
   }
-  if (std::holds_alternative<ToggleCommand>(command) || std::holds_alternative<ErrorBoundCommand>(command) ||
-      std::holds_alternative<ScaleErrorBoundCommand>(command) || std::holds_alternative<AdvanceTimeCommand>(command)) {
+  if (const auto* layer = std::get_if<LayerCommand>(&command)) ApplyLayer(*layer);
+  if (std::holds_alternative<ToggleCommand>(command) || std::holds_alternative<LayerCommand>(command) ||
+      std::holds_alternative<ErrorBoundCommand>(command) || std::holds_alternative<ScaleErrorBoundCommand>(command) ||
+      std::holds_alternative<AdvanceTimeCommand>(command)) {
     changed_ = true;
+  }
+}
+
+void ViewPilot::ApplyLayer(const LayerCommand& command) {
+  for (size_t i = 0; i < image_layers_.size(); ++i) {
+    NamedLayer& layer = image_layers_[i];
+    if (command.layer != layer.name && command.layer != std::to_string(i + 1)) continue;
+    if (command.setting == "toggle") {
+      layer.use.on = !layer.use.on;
+    } else {
+      // The command's text was checked when it was read.
+      BELVEDERE_CHECK(ApplyLayerSetting(command.setting, layer.use).ok());
+    }
   }
 }
 
@@ -210,7 +226,7 @@ ViewParameters ViewPilot::Parameters(uint64_t number, double time_s, double utc_
   view.height_px = lens_.height_px;
   view.error_px = error_px_;
   view.texel_px = spec_.texel_px;
-  view.image_layers = image_layers_;
+  view.image_layers = UsesOf(image_layers_);
   view.draw_objects = objects_;
   view.symbols = symbols_;
   view.labels = labels_;

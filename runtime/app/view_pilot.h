@@ -8,6 +8,7 @@
 // Threads: the UI thread. No clock, no windows: time and target are handed in.
 #pragma once
 
+#include "runtime/app/layer_text.h"
 #include "runtime/app/station_file.h"
 #include "runtime/scene/commands.h"
 #include "runtime/scene/view_parameters.h"
@@ -19,8 +20,8 @@ namespace belvedere {
 
 class ViewPilot {
  public:
-  // image_layers: the data types of the view's layers, in the order in which they are drawn.
-  ViewPilot(ViewId view, const WindowSpec& window, std::vector<DataType> image_layers);
+  // image_layers: in the order in which they are drawn.
+  ViewPilot(ViewId view, const WindowSpec& window, std::vector<NamedLayer> image_layers);
 
   // What a view can do about a command; commands for the whole station (time, target, picture, quit) change nothing.
   void Apply(const Command& command, const GroundHeight& ground);
@@ -45,11 +46,12 @@ class ViewPilot {
   void ApplyFollowing(const Command& command);
   void ApplyOverview(const Command& command);
   void ApplySwitches(const Command& command);
+  void ApplyLayer(const LayerCommand& command);
   glm::dvec3 PivotOf(const OrbitCommand& orbit, const GroundHeight& ground);
 
   const ViewId view_;
   const ViewSpec spec_;
-  const std::vector<DataType> image_layers_;
+  std::vector<NamedLayer> image_layers_;
   Lens lens_;
   Camera camera_;
   glm::dvec3 velocity_mps_{0.0};

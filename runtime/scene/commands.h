@@ -11,6 +11,7 @@
 #include "runtime/earth/units.h"
 
 #include <cstdint>
+#include <string>
 #include <variant>
 
 namespace belvedere {
@@ -65,6 +66,11 @@ enum class ViewSwitch : uint8_t { kHud, kLabels, kObjects, kSymbols, kSky, kWire
 struct ToggleCommand {
   ViewSwitch what = ViewSwitch::kHud;
 };
+// Changes one image layer of the view, by its name or its place counted from 1; a view without it stays as it is.
+struct LayerCommand {
+  std::string layer;
+  std::string setting;  // "toggle", or as runtime/app/layer_text.h has it: "off", "opacity=0.5"
+};
 // Moves the simulated time of day, of all views.
 struct AdvanceTimeCommand {
   double seconds = 0;
@@ -74,7 +80,7 @@ struct HomeCommand {};     // back to where the station file put the view
 struct QuitCommand {};
 
 using Command = std::variant<GrabCommand, PanCommand, ZoomCommand, OrbitCommand, LookCommand, FlyCommand, GoToCommand,
-                             CycleTargetCommand, ErrorBoundCommand, ScaleErrorBoundCommand, ToggleCommand,
+                             CycleTargetCommand, ErrorBoundCommand, ScaleErrorBoundCommand, ToggleCommand, LayerCommand,
                              AdvanceTimeCommand, PictureCommand, HomeCommand, QuitCommand>;
 
 struct ViewCommand {

@@ -39,7 +39,7 @@
 
 namespace belvedere {
 
-inline constexpr int kMaxImageLayers = 3;  // drawn over each other in one pass
+inline constexpr int kMaxImageLayers = 6;  // drawn over each other in one pass
 
 struct ListRecord {
   enum class Kind : uint8_t { kCullBegin, kCullEnd, kDrawTerrain, kDrawInstances };
@@ -75,8 +75,8 @@ struct TerrainDraw {
   uint32_t frame = 0;  // index -> frames
   float rise_s = 0;    // for how long its vertices rise or sink; 0: they do not
   uint32_t first_index = 0;
-  uint32_t index_count = 0;  // 3 a triangle
-  std::array<ImageUse, kMaxImageLayers> images{};
+  uint32_t index_count = 0;                        // 3 a triangle
+  std::array<ImageUse, kMaxImageLayers> images{};  // as ViewParameters::image_layers has them
 };
 
 struct ObjectLook {

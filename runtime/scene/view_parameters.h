@@ -12,6 +12,7 @@
 #include "runtime/base/view_id.h"
 #include "runtime/earth/units.h"
 #include "runtime/earth/visibility.h"
+#include "runtime/paging/layer_table.h"
 #include "runtime/paging/page.h"
 
 #include <glm/mat3x3.hpp>
@@ -22,6 +23,15 @@
 #include <vector>
 
 namespace belvedere {
+
+// One image layer as a view shows it: a texel c becomes multiplier * c^gamma, and opacity says how much of it counts.
+struct LayerUse {
+  DataType type = 0;
+  LayerRole role = LayerRole::kColour;
+  float opacity = 1, gamma = 1, multiplier = 1;
+  bool on = true;
+  bool shown() const { return on && opacity > 0; }
+};
 
 enum class Projection : uint8_t { kPerspective, kOrthographic };
 
@@ -43,7 +53,7 @@ struct ViewParameters {
   double target_frame_ms = 0;  // where frames take longer, error_px is loosened; 0: it is kept whatever it costs
   double most_error_px = 8.0;  // to which it is loosened at most
   double texel_px = 1.25;      // bound on the size of a texel on the screen
-  std::vector<DataType> image_layers;  // drawn over each other in this order: first a colour layer, then overlays
+  std::vector<LayerUse> image_layers;  // drawn over each other in this order, kMaxImageLayers at most
   bool draw_objects = true;
   bool symbols = false;  // objects as symbols of constant size instead of models (the overview)
   bool labels = true;

@@ -56,6 +56,8 @@ TEST(CommandTextTest, ReadsEveryForm) {
   EXPECT_EQ(Parsed<ErrorBoundCommand>("error 1.5").error_px, 1.5);
   EXPECT_EQ(Parsed<ScaleErrorBoundCommand>("error *0.8").factor, 0.8);
   EXPECT_EQ(Parsed<ToggleCommand>("toggle wireframe").what, ViewSwitch::kWireframe);
+  EXPECT_EQ(Parsed<LayerCommand>("layer relief opacity=0.5").setting, "opacity=0.5");
+  EXPECT_EQ(Parsed<LayerCommand>("layer 2 toggle").layer, "2");
   EXPECT_EQ(Parsed<CycleTargetCommand>("target previous").by, -1);
   EXPECT_EQ(Parsed<AdvanceTimeCommand>("time +600").seconds, 600);
   Parsed<PictureCommand>("picture");
@@ -67,7 +69,7 @@ TEST(CommandTextTest, SaysHowItMustBeWritten) {
   EXPECT_NE(ParseCommand("zoom", 1, 1).message().find("must be written: zoom STEPS"), std::string::npos);
   EXPECT_NE(ParseCommand("zoon 1", 1, 1).message().find("did you mean zoom?"), std::string::npos);
   for (const char* bad : {"", "goto 91 0 0", "error 0", "error -1", "error *x", "toggle", "toggle earth", "fly 2 0 0",
-                          "quit now", "time x"}) {
+                          "quit now", "time x", "layer relief", "layer relief opacity=2", "layer relief bright"}) {
     EXPECT_FALSE(ParseCommand(bad, 1, 1).ok()) << bad;
   }
 }

@@ -44,7 +44,7 @@ TEST(ViewPilotTest, PublishesWhatTheSpecSays) {
   WindowSpec window = WindowOf(ViewKind::kFree);
   window.view.error_px = 3;
   window.view.labels = false;
-  ViewPilot pilot(5, window, {2, 4});
+  ViewPilot pilot(5, window, {{"colour", {2}}, {"relief", {4, LayerRole::kMultiply}}});
   EXPECT_TRUE(pilot.TakeChanged());
   EXPECT_FALSE(pilot.TakeChanged());
   const ViewParameters view = pilot.Parameters(7, 1.5, 100);
@@ -117,6 +117,19 @@ TEST(ViewPilotTest, SwitchesAndBoundChange) {
   EXPECT_EQ(pilot.Parameters(1, 0, 0).error_px, 1.0);
   pilot.Apply(ErrorBoundCommand{1e9}, kSea);
   EXPECT_EQ(pilot.Parameters(1, 0, 0).error_px, kMostError_px);
+}
+
+TEST(ViewPilotTest, LayersChangeByNameAndByPlace) {
+  ViewPilot pilot(0, WindowOf(ViewKind::kFree), {{"colour", {2}}, {"relief", {4, LayerRole::kMultiply}}});
+  pilot.TakeChanged();
+  pilot.Apply(LayerCommand{"relief", "opacity=0.25"}, kSea);
+  pilot.Apply(LayerCommand{"1", "toggle"}, kSea);
+  pilot.Apply(LayerCommand{"clouds", "off"}, kSea);  // of another view
+  EXPECT_TRUE(pilot.TakeChanged());
+  const std::vector<LayerUse> uses = pilot.Parameters(1, 0, 0).image_layers;
+  EXPECT_FALSE(uses[0].on);
+  EXPECT_TRUE(uses[1].on);
+  EXPECT_FLOAT_EQ(uses[1].opacity, 0.25F);
 }
 
 TEST(TargetTest, RulesChoose) {

@@ -134,7 +134,8 @@ int Run(const char* dataset_path, const char* path_file, double error_px) {
   view.number = 1;
   view.error_px = error_px;
   for (const Layer& layer : scene.paging->layers.layers()) {
-    if (layer.kind == PageKind::kColour || layer.kind == PageKind::kOverlay) view.image_layers.push_back(layer.type);
+    if (layer.kind == PageKind::kColour || layer.kind == PageKind::kOverlay)
+      view.image_layers.push_back({layer.type, layer.role});
   }
   std::ifstream file(path_file);
   std::string line;

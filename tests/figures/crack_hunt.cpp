@@ -129,7 +129,7 @@ int Run(const std::string& dataset, int poses, int width_px, int height_px) {
   view.ecef_from_camera = CameraAxes(0, 0, {}, Radians::FromDegrees(-90), {});
   view.width_px = width_px;
   view.height_px = height_px;
-  view.image_layers = *(*station)->ImageLayers({});
+  view.image_layers = UsesOf(*(*station)->ImageLayers({}));
   view.sky = view.hud = view.labels = view.draw_objects = false;
   view.background = {1.0F, 0.0F, 1.0F};
   view.utc_s = 43'200;  // no place is dark enough for its colour to matter

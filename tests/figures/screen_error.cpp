@@ -169,7 +169,7 @@ double Run(const Dataset& dataset, const std::string& path, int poses, double bo
   view.height_px = kHeight_px;
   view.error_px = bound_px;
   view.exaggeration = exaggeration;
-  view.image_layers = *(*station)->ImageLayers({});
+  view.image_layers = UsesOf(*(*station)->ImageLayers({}));
   view.sky = view.hud = view.labels = view.draw_objects = false;
   ViewChannel& channel = (*station)->AddView(view, nullptr);
   FullSurface surface(dataset, exaggeration);

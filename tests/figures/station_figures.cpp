@@ -73,7 +73,7 @@ ViewParameters ViewFrom(Station& station, ViewId id, const Geodetic& place, doub
   view.eye_ecef = ToEcef(place);
   view.ecef_from_camera = CameraAxes(place.latitude_deg, place.longitude_deg, Radians::FromDegrees(heading_deg),
                                      Radians::FromDegrees(pitch_deg), {});
-  view.image_layers = *station.ImageLayers({});
+  view.image_layers = UsesOf(*station.ImageLayers({}));
   return view;
 }
 

@@ -64,7 +64,7 @@ class CutTest : public testing::Test {
   void LookFrom(double latitude, double longitude, double height, double pitch_deg) {
     view_.eye_ecef = ToEcef({latitude, longitude, height});
     view_.ecef_from_camera = CameraAxes(latitude, longitude, {}, Radians::FromDegrees(pitch_deg), {});
-    view_.image_layers = {kImagery};
+    view_.image_layers = {{kImagery}};
   }
   Cut Select(const CutLimits& limits = {}) {
     return SelectCut(view_, MatricesOf(view_, 0, 1000), layers_, kTerrain, limits, pages_);

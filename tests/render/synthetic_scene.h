@@ -201,7 +201,8 @@ inline void AddSurface(DisplayList& list, Scene& scene, const std::vector<Quadco
     draw.index_count = static_cast<uint32_t>(list.indices.size()) - draw.first_index;
     size_t layer = 0;
     for (const DataType type : {scene.colour_type(), scene.overlay_type()}) {
-      if (PagePin image = scene.Find(type, node)) draw.images[layer++].slot = PinInto(list, std::move(image));
+      if (PagePin image = scene.Find(type, node)) draw.images[layer].slot = PinInto(list, std::move(image));
+      ++layer;
     }
     const auto first = static_cast<uint32_t>(list.records.size());
     list.volumes.push_back(volumes[i]);
@@ -238,6 +239,7 @@ inline ViewParameters LookAt(const Geodetic& eye, double heading_deg, double pit
                                      Radians::FromDegrees(pitch_deg), Radians::FromDegrees(0));
   view.width_px = width;
   view.height_px = height;
+  view.image_layers = {{2, LayerRole::kColour}, {3, LayerRole::kMultiply}};  // of Scene
   view.hud = false;
   view.sky = false;
   view.background = {1.0F, 0.0F, 1.0F};

@@ -1,0 +1,145 @@
+// What image layers do to the ground: roles, opacity, gamma, multiplier, on and off, as the view has them at the
+// moment.
+#include "render/renderer.h"
+
+#include "tests/render/synthetic_scene.h"
+
+#include <gtest/gtest.h>
+
+namespace belvedere::testing {
+namespace {
+
+constexpr double kMidnight_s = 12 * 3600;
+constexpr Rgba kGround{100, 150, 200, 255};
+
+class Layers : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    RenderOptions options;
+    options.colour_slots = options.overlay_slots = 12;
+    auto stage = Stage::Make(scene_, options, clock_);
+    ASSERT_TRUE(stage.ok()) << stage.message();
+    stage_ = std::move(*stage);
+    nodes_ = Block(0, 0, 10, 3);
+    for (const Quadcode node : nodes_) scene_.AddTerrain(node, [](double, double) { return 0.0; });
+    view_ = LookAt({0, 0, 5000}, 0, -90, 32, 32);
+    view_.image_layers = {{scene_.colour_type(), LayerRole::kColour}, {scene_.overlay_type(), LayerRole::kMultiply}};
+  }
+  void Load(Rgba colour, std::optional<uint8_t> overlay) {
+    std::vector<PagePin> pins;
+    for (const Quadcode node : nodes_) {
+      pins.push_back(scene_.AddColour(node, colour));
+      if (overlay) pins.push_back(scene_.AddOverlay(node, *overlay));
+    }
+    for (PagePin& pin : pins) {
+      std::vector<PagePin> one;
+      one.push_back(std::move(pin));
+      stage_->Upload(std::move(one));
+    }
+    DisplayList& list = stage_->channel->terrain_lists.back();
+    list.Clear();
+    AddSurface(list, scene_, nodes_, 32);
+    list.statistics.height_above_ground_m = 5000;
+    stage_->channel->terrain_lists.Publish();
+  }
+  // The colour in the middle of the picture, as the view is now: no new list is made for a change of it.
+  Rgba Middle() {
+    ++view_.number;
+    stage_->channel->parameters.Publish(view_);
+    stage_->Frame();
+    const Picture picture = stage_->Take();
+    const size_t middle = 3 * (16 * 32 + 16);
+    return {picture.rgb[middle], picture.rgb[middle + 1], picture.rgb[middle + 2], 255};
+  }
+  static void ExpectNear(const Rgba& a, const Rgba& b, int tolerance) {
+    for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << "channel " << i;
+  }
+
+  ManualClock clock_;
+  Scene scene_;
+  std::vector<Quadcode> nodes_;
+  ViewParameters view_;
+  std::unique_ptr<Stage> stage_;
+};
+
+TEST_F(Layers, OpacityLetsThroughWhatIsUnder) {
+  Load(kGround, std::nullopt);
+  const Rgba whole = Middle();
+  view_.image_layers[0].opacity = 0;
+  const Rgba bare = Middle();
+  view_.image_layers[0].opacity = 0.5F;
+  const Rgba half = Middle();
+  for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(half[i], (whole[i] + bare[i]) / 2, 3);
+  EXPECT_GT(bare[0], whole[0] + 30);
+}
+
+TEST_F(Layers, OffIsAsIfItWereNotThere) {
+  Load(kGround, 200);
+  view_.image_layers[1].opacity = 0;
+  const Rgba colour_alone = Middle();
+  view_.image_layers[1] = {scene_.overlay_type(), LayerRole::kMultiply};
+  view_.image_layers[1].on = false;
+  ExpectNear(Middle(), colour_alone, 0);
+  view_.image_layers[1].on = true;
+  EXPECT_GT(Middle()[0], colour_alone[0] + 30);
+}
+
+TEST_F(Layers, GammaAndMultiplierChangeTheTexel) {
+  Load(kGround, std::nullopt);
+  const Rgba plain = Middle();
+  view_.image_layers[0].multiplier = 0.5F;
+  const Rgba darker = Middle();
+  EXPECT_LT(darker[0], plain[0] * 0.7);
+  view_.image_layers[0].multiplier = 1;
+  view_.image_layers[0].gamma = 2;
+  const Rgba contrasted = Middle();
+  // 100 of 255 squared is 39, 200 is 157.
+  EXPECT_NEAR(static_cast<double>(contrasted[0]) / plain[0], 0.39, 0.08);
+  EXPECT_NEAR(static_cast<double>(contrasted[2]) / plain[2], 0.78, 0.08);
+}
+
+TEST_F(Layers, GreyHasNoHue) {
+  Load(kGround, std::nullopt);
+  view_.image_layers[0].role = LayerRole::kGrey;
+  const Rgba grey = Middle();
+  EXPECT_NEAR(grey[0], grey[1], 8);  // but for the air
+  EXPECT_NEAR(grey[1], grey[2], 8);
+}
+
+TEST_F(Layers, NightLightsShineInTheDarkAlone) {
+  Load({10, 10, 10, 255}, 255);
+  view_.image_layers[1].role = LayerRole::kNight;
+  view_.image_layers[0].on = true;
+  const Rgba day = Middle();
+  view_.image_layers[1].on = false;
+  ExpectNear(Middle(), day, 0);
+  view_.utc_s += kMidnight_s;
+  const Rgba dark = Middle();
+  view_.image_layers[1].on = true;
+  const Rgba lit = Middle();
+  EXPECT_LT(dark[0], 40);
+  EXPECT_GT(lit[0], 200);
+}
+
+TEST_F(Layers, TheSunGlintsOnWaterWhereItIsMirrored) {
+  Load({10, 20, 60, 255}, 255);
+  view_.image_layers[1].role = LayerRole::kWater;
+  // From where the ground under the middle of the picture mirrors the sun, and from the other side.
+  view_.utc_s = 1'710'936'000;  // 2024-03-20 12:00 UTC: the sun over the equator
+  const auto eye_at = [&](double longitude_deg) {
+    const Geodetic eye{0, longitude_deg, 4000};
+    const ViewParameters look = LookAt(eye, longitude_deg < 0 ? 90 : 270, -40, 32, 32);
+    view_.eye_ecef = look.eye_ecef;
+    view_.ecef_from_camera = look.ecef_from_camera;
+    return Middle();
+  };
+  view_.utc_s += 3 * 3600;  // it stands 45 degrees over the west
+  const Rgba towards = eye_at(0.043);
+  const Rgba away = eye_at(-0.043);
+  EXPECT_GT(towards[0], away[0] + 60);
+  view_.image_layers[1].on = false;
+  EXPECT_LT(eye_at(0.043)[0], towards[0] - 60);
+}
+
+}  // namespace
+}  // namespace belvedere::testing
