@@ -206,7 +206,8 @@ class Selection {
       if (layer.shown()) drawn.images[i] = ChooseImage(layer.type, branch.node, measure);
     }
     if (drawn.visible && !drawn.finest) {
-      cut_.left_over_error_px = std::max(cut_.left_over_error_px, branch.page->error_m * measure.error_metre_px);
+      drawn.left_over_px = static_cast<float>(branch.page->error_m * measure.error_metre_px);
+      cut_.left_over_error_px = std::max(cut_.left_over_error_px, static_cast<double>(drawn.left_over_px));
     }
     cut_.records.push_back({ListRecord::Kind::kDrawTerrain, static_cast<uint32_t>(cut_.nodes.size()), 1, 0});
     cut_.nodes.push_back(drawn);

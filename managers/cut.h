@@ -57,6 +57,7 @@ struct CutNode {
   double error_scale = 0;
   double nearest_depth_m = 0;  // no point of the quadnode is nearer to the eye along the line of view
   bool finest = true;          // page->error_m is within the bound: drawing all posts keeps it
+  float left_over_px = 0;      // error of what page->error_m leaves, where not `finest`
   bool visible = true;         // in the frustum and before the horizon
 };
 

@@ -268,7 +268,7 @@ class Surface {
       if (node.visible)
         statistics_.achieved_error_px = std::max(statistics_.achieved_error_px, choice.worst * error_px);
       state_.morph.Place(node, list_.frames[frame], choice.is_new, *choice.mesh);
-      chosen_.push_back({choice.mesh, frame, choice.is_new});
+      chosen_.push_back({choice.mesh, frame, choice.is_new, static_cast<float>(choice.worst * error_px)});
       first_vertex_.push_back(vertices);
       vertices += static_cast<uint32_t>(choice.mesh->vertices.size());
     }
@@ -323,6 +323,7 @@ class Surface {
       draw.node = nodes_[i].node;
       draw.frame = chosen_[i].frame;
       draw.rise_s = static_cast<float>(mesh.rises_until_s - mesh.rises_from_s);
+      draw.error_px = chosen_[i].error_px + nodes_[i].left_over_px;
       draw.first_index = static_cast<uint32_t>(list_.indices.size());
       draw.images = nodes_[i].images;
       Joiner(nodes_[i], mesh, first_vertex_[i], lines_, poles_, list_.indices).Append();
@@ -336,6 +337,7 @@ class Surface {
     KeptMesh* mesh;
     uint32_t frame;
     bool is_new;
+    float error_px;
   };
   const std::span<const CutNode> nodes_;
   SurfaceState& state_;

@@ -20,6 +20,7 @@
 #include "render/render_options.h"
 #include "render/sky_pass.h"
 #include "render/terrain_pass.h"
+#include "render/volume_pass.h"
 #include "runtime/base/clock.h"
 #include "runtime/scene/view_channel.h"
 
@@ -96,6 +97,7 @@ class Renderer {
   GpuPages pages_;
   TerrainPrograms terrain_programs_;
   SkyPass sky_;
+  VolumePass volumes_;
   ObjectPass objects_;
   OverlayPass overlay_;
   GlBuffer view_block_;

@@ -1,5 +1,6 @@
 #include "render/terrain_pass.h"
 
+#include "render/ground_tint.h"
 #include "render/shader_sources.h"
 #include "render/view_block.h"
 #include "runtime/base/status.h"
@@ -23,9 +24,10 @@ struct DrawRow {
   float per_grid_unit = 0;
   float per_rise_s = 0;
   std::array<float, 2> unused{};
+  std::array<uint32_t, 4> tints{};
   std::array<glm::vec4, kMaxImageLayers> image{};
 };
-static_assert(sizeof(DrawRow) == 128);
+static_assert(sizeof(DrawRow) == 144);
 static_assert(sizeof(FrameRow) == 128);
 static_assert(sizeof(ListVertex) == 24);
 
@@ -48,17 +50,18 @@ GLuint TerrainPrograms::For(const Layers& layers) {
   if (!program) {
     std::string defines;
     const auto count_of = [&](LayerRole role) {
-      return std::count_if(layers.begin(), layers.end(),
+      return std::count_if(layers.images.begin(), layers.images.end(),
                            [&](const LayerMode& layer) { return layer.role == ModeOf(role); });
     };
-    for (size_t i = 0; i < layers.size(); ++i) {
-      defines += fmt::format("#define LAYER{0} {1}\n#define SINGLE{0} {2}\n#define ADJUST{0} {3}\n", i, layers[i].role,
-                             layers[i].single ? 1 : 0, layers[i].adjusted ? 1 : 0);
+    for (size_t i = 0; i < layers.images.size(); ++i) {
+      defines += fmt::format("#define LAYER{0} {1}\n#define SINGLE{0} {2}\n#define ADJUST{0} {3}\n", i,
+                             layers.images[i].role, layers.images[i].single ? 1 : 0, layers.images[i].adjusted ? 1 : 0);
     }
     const auto multipliers = count_of(LayerRole::kMultiply);
-    defines += fmt::format("#define MULTIPLIERS {}\n#define SLOPES {}\n#define NIGHT {}\n#define WATER {}\n",
-                           multipliers, multipliers == 0 ? 1 : 0, count_of(LayerRole::kNight) > 0 ? 1 : 0,
-                           count_of(LayerRole::kWater) > 0 ? 1 : 0);
+    defines +=
+        fmt::format("#define MULTIPLIERS {}\n#define SLOPES {}\n#define NIGHT {}\n#define WATER {}\n#define TINT {}\n",
+                    multipliers, multipliers == 0 ? 1 : 0, count_of(LayerRole::kNight) > 0 ? 1 : 0,
+                    count_of(LayerRole::kWater) > 0 ? 1 : 0, layers.tinted ? 1 : 0);
     const std::string common = std::string(shaders::kView) + std::string(shaders::kAtmosphere);
     program = MakeProgram("terrain", common + std::string(shaders::kTerrainVert),
                           common + std::string(shaders::kTerrainFrag), defines);
@@ -96,9 +99,11 @@ TerrainPass::TerrainPass(const GpuPages& pages, TerrainPrograms& programs)
   glVertexArrayElementBuffer(array, indices_.get());
 }
 
-TerrainPass::Layers TerrainPass::LayersOf(uint32_t draw, std::span<const ImageUse> images,
-                                          std::span<const LayerUse> uses, const glm::dvec3& sun_ecef) const {
-  Layers layers{};
+TerrainPass::Layers TerrainPass::LayersOf(uint32_t draw, std::span<const ImageUse> images, const ViewParameters& view,
+                                          const glm::dvec3& sun_ecef) const {
+  Layers layers;
+  layers.tinted = view.tint != GroundTint::kNone;
+  const std::span<const LayerUse> uses = view.image_layers;
   const double sun_sine = glm::dot(middles_[draw].up_ecef, sun_ecef);
   const double reach = middles_[draw].reach;
   for (size_t i = 0; i < std::min(images.size(), uses.size()); ++i) {
@@ -107,8 +112,8 @@ TerrainPass::Layers TerrainPass::LayersOf(uint32_t draw, std::span<const ImageUs
     // Neither costs anything where it cannot be seen.
     if (use.role == LayerRole::kNight && sun_sine - reach > kLightsOff) continue;
     if (use.role == LayerRole::kWater && sun_sine + reach < 0) continue;
-    layers[i] = {ModeOf(use.role), !pages_.IsColour(images[i].slot),
-                 use.opacity != 1 || use.gamma != 1 || use.multiplier != 1};
+    layers.images[i] = {ModeOf(use.role), !pages_.IsColour(images[i].slot),
+                        use.opacity != 1 || use.gamma != 1 || use.multiplier != 1};
   }
   return layers;
 }
@@ -133,6 +138,7 @@ void TerrainPass::SetDraws(const DisplayList& list) {
     row.frame = draw.frame;
     row.per_grid_unit = 1.0F / static_cast<float>(draw.node.GridSize());
     row.per_rise_s = draw.rise_s > 0 ? 1.0F / draw.rise_s : 0.0F;
+    row.tints = TintsOf(draw, list);
     for (size_t i = 0; i < row.image.size(); ++i) {
       const ImageUse& use = draw.images[i];
       if (use.slot < 0) continue;
@@ -161,7 +167,7 @@ void TerrainPass::SetMatrices(const DisplayList& list, const ViewMatrices& matri
 }
 
 void TerrainPass::Draw(const DisplayList& list, std::span<const uint32_t> draws, const ViewMatrices& matrices,
-                       std::span<const LayerUse> uses, const glm::dvec3& sun_ecef) {
+                       const ViewParameters& view, const glm::dvec3& sun_ecef) {
   if (draws.empty()) return;
   SetMatrices(list, matrices);
   glBindVertexArray(vertex_array_.get());
@@ -170,7 +176,7 @@ void TerrainPass::Draw(const DisplayList& list, std::span<const uint32_t> draws,
   pages_.BindImages();
   layers_of_draw_.clear();
   for (const uint32_t number : draws) {
-    layers_of_draw_.push_back(LayersOf(number, list.terrain_draws[number].images, uses, sun_ecef));
+    layers_of_draw_.push_back(LayersOf(number, list.terrain_draws[number].images, view, sun_ecef));
   }
   layers_met_ = layers_of_draw_;
   std::sort(layers_met_.begin(), layers_met_.end());

@@ -30,7 +30,11 @@ class TerrainPrograms {
     bool adjusted = false;  // opacity, gamma and multiplier are not all 1
     auto operator<=>(const LayerMode&) const = default;
   };
-  using Layers = std::array<LayerMode, kMaxImageLayers>;
+  struct Layers {
+    std::array<LayerMode, kMaxImageLayers> images{};
+    bool tinted = false;
+    auto operator<=>(const Layers&) const = default;
+  };
   GLuint For(const Layers& layers);
 
  private:
@@ -43,13 +47,13 @@ class TerrainPass {
 
   // The list is drawn from now on. REQUIRES: it stays as it is until the next SetList.
   void SetList(const DisplayList& list);
-  // draws: indices of the list's terrain_draws. Layers are shown as `uses` says now.
+  // draws: indices of the list's terrain_draws. Layers and tint are those that the view has now.
   void Draw(const DisplayList& list, std::span<const uint32_t> draws, const ViewMatrices& matrices,
-            std::span<const LayerUse> uses, const glm::dvec3& sun_ecef);
+            const ViewParameters& view, const glm::dvec3& sun_ecef);
 
  private:
   using Layers = TerrainPrograms::Layers;
-  Layers LayersOf(uint32_t draw, std::span<const ImageUse> images, std::span<const LayerUse> uses,
+  Layers LayersOf(uint32_t draw, std::span<const ImageUse> images, const ViewParameters& view,
                   const glm::dvec3& sun_ecef) const;
   void SetDraws(const DisplayList& list);
   void SetMatrices(const DisplayList& list, const ViewMatrices& matrices);

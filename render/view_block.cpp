@@ -48,7 +48,8 @@ ViewBlock MakeViewBlock(const ViewParameters& view, const ViewMatrices& matrices
     const LayerUse& layer = view.image_layers[i];
     block.layers[i] = {layer.opacity, layer.gamma, layer.multiplier, 0.0F};
   }
-  block.moment = {static_cast<float>(std::clamp(since_list_s, 0.0, kLongest_s)), 0.0F, 0.0F, 0.0F};
+  block.moment = {static_cast<float>(std::clamp(since_list_s, 0.0, kLongest_s)),
+                  static_cast<float>(std::max(static_cast<int>(view.tint) - 1, 0)), 0.0F, 0.0F};
   return block;
 }
 

@@ -18,6 +18,9 @@ in vec4 uv45;
 #if NIGHT
 in float dark;                                 // share of a light on the ground that reaches the eye, by day none
 #endif
+#if TINT
+flat in vec4 tint;
+#endif
 #if WATER
 in vec3 to_eye;
 in vec4 up_sun;                                // xyz: upwards; w: share of the sun's light that is mirrored and arrives
@@ -95,5 +98,8 @@ void main() {
 #endif
 #if WATER
   if (water > 0.01) colour += vec3(1.0, 0.95, 0.85) * (water * up_sun.w * Glint());
+#endif
+#if TINT
+  colour = mix(colour, tint.rgb * (0.4 + 0.8 * dot(colour, kLuminance)), tint.a);
 #endif
 }

@@ -20,6 +20,7 @@ struct DrawRow {
   float per_grid_unit;                         // 1 / side of the quadnode
   float per_rise_s;
   vec2 unused;
+  uvec4 tints;                                 // by error, level, frame and image
   vec4 image[6];                               // offset u, offset v, scale, array layer
 };
 layout(std430, binding = 0) readonly buffer Frames { FrameRow frames[]; };
@@ -41,6 +42,9 @@ out vec4 uv45;
 #endif
 #if NIGHT
 out float dark;
+#endif
+#if TINT
+flat out vec4 tint;
 #endif
 #if WATER
 out vec3 to_eye;
@@ -117,6 +121,9 @@ void main() {
 #if WATER
   to_eye = eyewards;
   up_sun = vec4(up, smoothstep(0.0, 0.08, sun_sine) * (1.0 - veil.g));
+#endif
+#if TINT
+  tint = unpackUnorm4x8(draws[draw_number].tints[int(moment.y)]);
 #endif
   pages = vec3(draws[draw_number].image[0].w, draws[draw_number].image[1].w, draws[draw_number].image[2].w);
 }

@@ -69,11 +69,21 @@ std::optional<Command> ParseToggle(const Words& words) {
   static const std::map<std::string_view, ViewSwitch> kSwitches = {
       {"hud", ViewSwitch::kHud},         {"labels", ViewSwitch::kLabels}, {"objects", ViewSwitch::kObjects},
       {"symbols", ViewSwitch::kSymbols}, {"sky", ViewSwitch::kSky},       {"wireframe", ViewSwitch::kWireframe},
-      {"frozen", ViewSwitch::kFrozen}};
+      {"volumes", ViewSwitch::kVolumes}, {"frozen", ViewSwitch::kFrozen}};
   if (words.size() != 2) return std::nullopt;
   const auto found = kSwitches.find(words[1]);
   if (found == kSwitches.end()) return std::nullopt;
   return ToggleCommand{found->second};
+}
+
+std::optional<Command> ParseTint(const Words& words) {
+  static const std::map<std::string_view, std::optional<GroundTint>> kTints = {
+      {"none", GroundTint::kNone},   {"error", GroundTint::kError}, {"level", GroundTint::kLevel},
+      {"frame", GroundTint::kFrame}, {"image", GroundTint::kImage}, {"next", std::nullopt}};
+  if (words.size() != 2) return std::nullopt;
+  const auto found = kTints.find(words[1]);
+  if (found == kTints.end()) return std::nullopt;
+  return TintCommand{found->second};
 }
 
 std::optional<Command> ParseLayer(const Words& words) {
@@ -150,8 +160,11 @@ const std::map<std::string_view, Form>& Forms() {
       {"error",
        {"error PX or error *FACTOR", [](const Words& words, const PicturePoint&) { return ParseError(words); }}},
       {"toggle",
-       {"toggle hud, labels, objects, symbols, sky, wireframe or frozen",
+       {"toggle hud, labels, objects, symbols, sky, wireframe, volumes or frozen",
         [](const Words& words, const PicturePoint&) { return ParseToggle(words); }}},
+      {"tint",
+       {"tint none, error, level, frame, image or next",
+        [](const Words& words, const PicturePoint&) { return ParseTint(words); }}},
       {"layer",
        {"layer NAME|NUMBER toggle|on|off|opacity=0..1|gamma=0.1..10|multiplier=0..100|role=ROLE",
         [](const Words& words, const PicturePoint&) { return ParseLayer(words); }}},

@@ -5,6 +5,7 @@
 
 #include "runtime/app/program.h"
 #include "runtime/earth/units.h"
+#include "runtime/scene/view_parameters.h"
 
 #include <optional>
 #include <string>
@@ -53,7 +54,8 @@ struct SnapshotOptions {
   double exaggeration = 1;
   std::optional<double> utc_s;
   std::string out, depth, trace;
-  bool json = false, magenta = false, wireframe = false, unsettled = false;
+  bool json = false, magenta = false, wireframe = false, volumes = false, unsettled = false;
+  GroundTint tint = GroundTint::kNone;
   int64_t cache_MiB = 512;
   double timeout_s = 120;
 };

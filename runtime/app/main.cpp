@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include <exception>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -126,6 +127,12 @@ void AddSnapshot(CLI::App& program, SnapshotOptions& options, Texts& texts) {
   command->add_option("--background", texts.background, "what is seen where no ground is")
       ->check(CLI::IsMember({"sky", "magenta"}));
   command->add_flag("--wireframe", options.wireframe, "edges of triangles alone");
+  command->add_flag("--volumes", options.volumes, "bounding volumes over the picture");
+  command->add_option("--tint", options.tint, "what the ground is tinted by")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, GroundTint>{{"error", GroundTint::kError},
+                                                                            {"level", GroundTint::kLevel},
+                                                                            {"frame", GroundTint::kFrame},
+                                                                            {"image", GroundTint::kImage}}));
   command->add_flag("--unsettled", options.unsettled, "do not wait for the view to settle");
   command->add_option("--cache-mib", options.cache_MiB)
       ->check(CLI::Range(int64_t{16}, int64_t{1} << 20))

@@ -36,6 +36,8 @@ ViewParameters ParametersOf(const SnapshotOptions& options, std::vector<LayerUse
   view.image_layers = std::move(layers);
   view.draw_objects = view.labels = view.hud = false;
   view.wireframe = options.wireframe;
+  view.volumes = options.volumes;
+  view.tint = options.tint;
   if (options.magenta) {
     view.sky = false;
     view.background = {1.0F, 0.0F, 1.0F};
@@ -50,7 +52,8 @@ Result<Picture> WaitForPicture(Station& station, const ViewChannel& channel, con
   while (!StopAsked()) {
     const std::shared_ptr<const FrameReport> report = channel.frame.Get();
     const bool ready = options.unsettled ? report->nodes > 0 : report->nodes > 0 && report->uploads_pending == 0;
-    if (ready && report->terrain_list != looked_at) {
+    // A list that has settled may still be on its way to the places of its vertices.
+    if (ready && (report->settled || report->terrain_list != looked_at)) {
       looked_at = report->terrain_list;
       Result<Picture> picture = station.render().Capture(kView, Renderer::Moment::kOfParameters).get();
       if (!picture.ok() || picture->settled || options.unsettled) return picture;

@@ -148,13 +148,18 @@ void ViewPilot::ApplySwitches(const Command& command) {
       case ViewSwitch::kSymbols: symbols_ = !symbols_; break;
       case ViewSwitch::kSky: sky_ = !sky_; break;
       case ViewSwitch::kWireframe: wireframe_ = !wireframe_; break;
+      case ViewSwitch::kVolumes: volumes_ = !volumes_; break;
       case ViewSwitch::kFrozen: frozen_ = !frozen_; break;
     }
   }
+  if (const auto* tint = std::get_if<TintCommand>(&command)) {
+    const int next = (static_cast<int>(tint_) + 1) % kGroundTints;
+    tint_ = tint->tint.value_or(static_cast<GroundTint>(next));
+  }
   if (const auto* layer = std::get_if<LayerCommand>(&command)) ApplyLayer(*layer);
   if (std::holds_alternative<ToggleCommand>(command) || std::holds_alternative<LayerCommand>(command) ||
-      std::holds_alternative<ErrorBoundCommand>(command) || std::holds_alternative<ScaleErrorBoundCommand>(command) ||
-      std::holds_alternative<AdvanceTimeCommand>(command)) {
+      std::holds_alternative<TintCommand>(command) || std::holds_alternative<ErrorBoundCommand>(command) ||
+      std::holds_alternative<ScaleErrorBoundCommand>(command) || std::holds_alternative<AdvanceTimeCommand>(command)) {
     changed_ = true;
   }
 }
@@ -233,6 +238,8 @@ ViewParameters ViewPilot::Parameters(uint64_t number, double time_s, double utc_
   view.hud = hud_;
   view.sky = sky_;
   view.wireframe = wireframe_;
+  view.volumes = volumes_;
+  view.tint = tint_;
   view.frozen = frozen_;
   return view;
 }

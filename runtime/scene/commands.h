@@ -9,8 +9,10 @@
 
 #include "runtime/base/view_id.h"
 #include "runtime/earth/units.h"
+#include "runtime/scene/view_parameters.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -62,9 +64,12 @@ struct ErrorBoundCommand {
 struct ScaleErrorBoundCommand {
   double factor = 1;
 };
-enum class ViewSwitch : uint8_t { kHud, kLabels, kObjects, kSymbols, kSky, kWireframe, kFrozen };
+enum class ViewSwitch : uint8_t { kHud, kLabels, kObjects, kSymbols, kSky, kWireframe, kVolumes, kFrozen };
 struct ToggleCommand {
   ViewSwitch what = ViewSwitch::kHud;
+};
+struct TintCommand {
+  std::optional<GroundTint> tint;  // nullopt: the one after that of now
 };
 // Changes one image layer of the view, by its name or its place counted from 1; a view without it stays as it is.
 struct LayerCommand {
@@ -80,8 +85,8 @@ struct HomeCommand {};     // back to where the station file put the view
 struct QuitCommand {};
 
 using Command = std::variant<GrabCommand, PanCommand, ZoomCommand, OrbitCommand, LookCommand, FlyCommand, GoToCommand,
-                             CycleTargetCommand, ErrorBoundCommand, ScaleErrorBoundCommand, ToggleCommand, LayerCommand,
-                             AdvanceTimeCommand, PictureCommand, HomeCommand, QuitCommand>;
+                             CycleTargetCommand, ErrorBoundCommand, ScaleErrorBoundCommand, ToggleCommand, TintCommand,
+                             LayerCommand, AdvanceTimeCommand, PictureCommand, HomeCommand, QuitCommand>;
 
 struct ViewCommand {
   ViewId view = 0;

@@ -74,6 +74,7 @@ struct TerrainDraw {
   Quadcode node;
   uint32_t frame = 0;  // index -> frames
   float rise_s = 0;    // for how long its vertices rise or sink; 0: they do not
+  float error_px = 0;  // largest error that it leaves on the screen
   uint32_t first_index = 0;
   uint32_t index_count = 0;                        // 3 a triangle
   std::array<ImageUse, kMaxImageLayers> images{};  // as ViewParameters::image_layers has them

@@ -33,6 +33,11 @@ struct LayerUse {
   bool shown() const { return on && opacity > 0; }
 };
 
+// What the ground is tinted by, to see how it is drawn: the error that each quadnode leaves (blue none, green half the
+// bound, yellow the bound, red more), its level, its coordinate frame, or the level of its lowest image.
+enum class GroundTint : uint8_t { kNone, kError, kLevel, kFrame, kImage };
+inline constexpr int kGroundTints = 5;
+
 enum class Projection : uint8_t { kPerspective, kOrthographic };
 
 struct ViewParameters {
@@ -60,6 +65,8 @@ struct ViewParameters {
   bool hud = true;
   bool sky = true;
   bool wireframe = false;
+  bool volumes = false;  // bounding volumes of what is drawn
+  GroundTint tint = GroundTint::kNone;
   bool frozen = false;         // managers keep the cut that they have while the eye flies on
   glm::vec3 background{0.0F};  // linear RGB where nothing is drawn (seen with sky off)
 

@@ -56,6 +56,9 @@ TEST(CommandTextTest, ReadsEveryForm) {
   EXPECT_EQ(Parsed<ErrorBoundCommand>("error 1.5").error_px, 1.5);
   EXPECT_EQ(Parsed<ScaleErrorBoundCommand>("error *0.8").factor, 0.8);
   EXPECT_EQ(Parsed<ToggleCommand>("toggle wireframe").what, ViewSwitch::kWireframe);
+  EXPECT_EQ(Parsed<ToggleCommand>("toggle volumes").what, ViewSwitch::kVolumes);
+  EXPECT_EQ(Parsed<TintCommand>("tint level").tint, GroundTint::kLevel);
+  EXPECT_EQ(Parsed<TintCommand>("tint next").tint, std::nullopt);
   EXPECT_EQ(Parsed<LayerCommand>("layer relief opacity=0.5").setting, "opacity=0.5");
   EXPECT_EQ(Parsed<LayerCommand>("layer 2 toggle").layer, "2");
   EXPECT_EQ(Parsed<CycleTargetCommand>("target previous").by, -1);
@@ -68,8 +71,9 @@ TEST(CommandTextTest, ReadsEveryForm) {
 TEST(CommandTextTest, SaysHowItMustBeWritten) {
   EXPECT_NE(ParseCommand("zoom", 1, 1).message().find("must be written: zoom STEPS"), std::string::npos);
   EXPECT_NE(ParseCommand("zoon 1", 1, 1).message().find("did you mean zoom?"), std::string::npos);
-  for (const char* bad : {"", "goto 91 0 0", "error 0", "error -1", "error *x", "toggle", "toggle earth", "fly 2 0 0",
-                          "quit now", "time x", "layer relief", "layer relief opacity=2", "layer relief bright"}) {
+  for (const char* bad :
+       {"", "goto 91 0 0", "error 0", "error -1", "error *x", "toggle", "toggle earth", "fly 2 0 0", "quit now",
+        "time x", "layer relief", "layer relief opacity=2", "layer relief bright", "tint", "tint red"}) {
     EXPECT_FALSE(ParseCommand(bad, 1, 1).ok()) << bad;
   }
 }

@@ -119,6 +119,18 @@ TEST(ViewPilotTest, SwitchesAndBoundChange) {
   EXPECT_EQ(pilot.Parameters(1, 0, 0).error_px, kMostError_px);
 }
 
+TEST(ViewPilotTest, TintsComeOneAfterAnother) {
+  ViewPilot pilot(0, WindowOf(ViewKind::kFree), {});
+  pilot.TakeChanged();
+  pilot.Apply(TintCommand{GroundTint::kFrame}, kSea);
+  EXPECT_TRUE(pilot.TakeChanged());
+  EXPECT_EQ(pilot.Parameters(1, 0, 0).tint, GroundTint::kFrame);
+  pilot.Apply(TintCommand{}, kSea);
+  EXPECT_EQ(pilot.Parameters(1, 0, 0).tint, GroundTint::kImage);
+  pilot.Apply(TintCommand{}, kSea);
+  EXPECT_EQ(pilot.Parameters(1, 0, 0).tint, GroundTint::kNone);
+}
+
 TEST(ViewPilotTest, LayersChangeByNameAndByPlace) {
   ViewPilot pilot(0, WindowOf(ViewKind::kFree), {{"colour", {2}}, {"relief", {4, LayerRole::kMultiply}}});
   pilot.TakeChanged();

@@ -1,5 +1,6 @@
 // What image layers do to the ground: roles, opacity, gamma, multiplier, on and off, as the view has them at the
 // moment.
+#include "render/ground_tint.h"
 #include "render/renderer.h"
 
 #include "tests/render/synthetic_scene.h"
@@ -104,6 +105,43 @@ TEST_F(Layers, GreyHasNoHue) {
   const Rgba grey = Middle();
   EXPECT_NEAR(grey[0], grey[1], 8);  // but for the air
   EXPECT_NEAR(grey[1], grey[2], 8);
+}
+
+TEST_F(Layers, ATintShowsHowTheGroundIsDrawn) {
+  Load(kGround, std::nullopt);
+  const Rgba plain = Middle();
+  view_.tint = GroundTint::kError;  // none is left: blue
+  const Rgba none_left = Middle();
+  EXPECT_GT(none_left[2], none_left[0] + 60);
+  view_.tint = GroundTint::kNone;
+  ExpectNear(Middle(), plain, 0);
+}
+
+TEST_F(Layers, VolumesAreDrawnOverTheGround) {
+  Load(kGround, std::nullopt);
+  const auto lines = [&] {
+    ++view_.number;
+    stage_->channel->parameters.Publish(view_);
+    stage_->Frame();
+    const Picture picture = stage_->Take();
+    int count = 0;
+    for (size_t i = 0; i < picture.rgb.size(); i += 3) count += picture.rgb[i] > 200 && picture.rgb[i + 2] < 60 ? 1 : 0;
+    return count;
+  };
+  EXPECT_EQ(lines(), 0);
+  view_ = LookAt({0, 0, 60'000}, 0, -90, 96, 96);
+  view_.volumes = true;
+  EXPECT_GT(lines(), 40);
+}
+
+TEST(GroundTintTest, ErrorsGoFromBlueOverYellowToRed) {
+  const auto channel = [](uint32_t colour, int which) { return colour >> (8 * which) & 0xFFU; };
+  EXPECT_EQ(channel(ErrorColour(0, 1), 2), 255U);
+  EXPECT_EQ(channel(ErrorColour(0, 1), 0), 0U);
+  EXPECT_EQ(channel(ErrorColour(1, 1), 0), 255U);
+  EXPECT_EQ(channel(ErrorColour(1, 1), 1), 255U);
+  EXPECT_EQ(channel(ErrorColour(9, 1), 0), 255U);
+  EXPECT_EQ(channel(ErrorColour(9, 1), 1), 0U);
 }
 
 TEST_F(Layers, NightLightsShineInTheDarkAlone) {
