@@ -95,10 +95,12 @@ Station::~Station() {
 Result<std::vector<DataType>> Station::ImageLayers(const std::vector<std::string>& names) const {
   std::vector<DataType> types;
   if (names.empty()) {
+    // The dataset's layers come first in the table; those that are made are shown when they are asked for.
     const Layer* colour = paging_->layers.FirstOf(PageKind::kColour);
-    if (colour != nullptr) types.push_back(colour->type);
+    if (colour != nullptr && colour->type < dataset_->layers().size()) types.push_back(colour->type);
     for (const Layer& layer : paging_->layers.layers()) {
-      if (layer.kind == PageKind::kOverlay && types.size() < kMaxImageLayers) types.push_back(layer.type);
+      const bool multiplies = layer.kind == PageKind::kOverlay && layer.role == LayerRole::kMultiply;
+      if (multiplies && types.size() < kMaxImageLayers) types.push_back(layer.type);
     }
     return types;
   }

@@ -44,8 +44,8 @@ class Station {
   Station(const Station&) = delete;
   Station& operator=(const Station&) = delete;
 
-  // Data types of the named image layers, to be drawn in that order; with no names the first colour layer and every
-  // overlay, as many as fit.
+  // Data types of the named image layers, to be drawn in that order; with no names the dataset's first colour layer
+  // and all that multiply it, as many as fit.
   Result<std::vector<DataType>> ImageLayers(const std::vector<std::string>& names) const;
 
   // first: the view's parameters until others are published, with the number that the view is to have.
