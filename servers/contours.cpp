@@ -16,6 +16,8 @@ namespace {
 constexpr int kEvery = 5;  // this many lines, one is heavier
 constexpr TexelColour kLand = {122, 66, 22};
 constexpr TexelColour kSea = {36, 84, 170};
+constexpr TexelColour kLandText = {84, 40, 8};
+constexpr TexelColour kSeaText = {16, 48, 120};
 constexpr TexelColour kCoast = {8, 26, 96};
 constexpr TexelColour kHalo = {250, 246, 236};
 
@@ -124,7 +126,7 @@ class Labels {
         (std::abs(Ground(box.west, row).height_m - line_m) + std::abs(Ground(box.east - 1, row).height_m - line_m)) /
         gradient;
     if (bent > kMostBent) return std::nullopt;
-    return Label{text, box, line_m < 0 ? kSea : kLand, bent};
+    return Label{text, box, line_m < 0 ? kSeaText : kLandText, bent};
   }
 
   const std::vector<TexelHeight>& ground_;

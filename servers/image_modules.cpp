@@ -1,5 +1,6 @@
 #include "servers/image_modules.h"
 
+#include "runtime/base/log.h"
 #include "runtime/earth/geoid.h"
 #include "servers/contours.h"
 #include "servers/graticule.h"
@@ -73,6 +74,7 @@ std::vector<ReadModule> ModulesOfHeights(const ReadModule& elevation) {
 }
 
 std::vector<ReadModule> ModulesOfQuadnodes(const ReadModule& terrain) {
+  if (!Text().font().ok()) LogWarning("{}", Text().font().message());
   std::vector<ReadModule> modules;
   modules.push_back(OfQuadnodes(kGridLayer, terrain, DrawGraticule));
   modules.push_back(OfQuadnodes(kQuadcodeLayer, terrain, DrawQuadcodeFrame));

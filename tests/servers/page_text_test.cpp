@@ -52,6 +52,7 @@ TEST(PageText, ManyThreadsWriteTheSame) {
   const PageText text;
   std::array<std::unique_ptr<ImagePage>, 4> pages;
   std::vector<std::thread> threads;
+  threads.reserve(pages.size());
   for (auto& page : pages) {
     threads.emplace_back([&] { page = DrawQuadcodeFrame(Quadcode::Containing(47, 8, 12), text); });
   }
