@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
+#include <unordered_map>
 
 namespace belvedere {
 namespace {
@@ -81,15 +82,23 @@ class Joiner {
         side.pole = border == Border::kNorth ? poles.north : poles.south;
         continue;
       }
-      side.vertices = lines.Along(node.node, border);
-      side.start = BorderLines::PositionOf(node.node, border, 0);
-      side.spacing = node.node.PostSpacing();
+      const uint64_t start = BorderLines::PositionOf(node.node, border, 0);
+      const uint64_t spacing = node.node.PostSpacing();
+      for (const BorderVertex& vertex : lines.Along(node.node, border)) {
+        const uint64_t offset = vertex.position - start;
+        if (offset % spacing == 0) side.at_post[offset / spacing] = &vertex;
+      }
     }
   }
 
   void Append() {
+    const size_t begin = out_.size();
+    out_.resize(begin + 3 * mesh_.inner.size());
+    uint32_t* next = out_.data() + begin;
     for (const KeptMesh::Triangle& triangle : mesh_.inner) {
-      Emit(first_ + triangle.a, first_ + triangle.b, first_ + triangle.c);
+      *next++ = first_ + triangle.a;
+      *next++ = first_ + triangle.b;
+      *next++ = first_ + triangle.c;
     }
     for (const KeptMesh::Triangle& triangle : mesh_.at_border) {
       const std::array<uint16_t, 3> corners{triangle.a, triangle.b, triangle.c};
@@ -105,17 +114,12 @@ class Joiner {
 
  private:
   struct Side {
-    std::span<const BorderVertex> vertices;
-    uint64_t start = 0;
-    uint64_t spacing = 1;
+    // Of each post along the border; null where neither side draws it. What lies between two of them stands between.
+    std::array<const BorderVertex*, kPosts> at_post{};
     std::optional<uint32_t> pole;  // the whole border is that one vertex
   };
 
-  const BorderVertex* At(const Side& side, int along) const {
-    const uint64_t position = side.start + static_cast<uint64_t>(along) * side.spacing;
-    return &*std::lower_bound(side.vertices.begin(), side.vertices.end(), position,
-                              [](const BorderVertex& v, uint64_t p) { return v.position < p; });
-  }
+  static const BorderVertex* At(const Side& side, int along) { return side.at_post[static_cast<size_t>(along)]; }
 
   uint32_t Canonical(int post, uint16_t own) const {
     const unsigned bits = border_bits_[static_cast<size_t>(post)];
@@ -251,6 +255,7 @@ class Surface {
 
   MeshStatistics Build(const Sight& sight, double error_px) {
     Choose(sight, error_px);
+    Place();
     Share();
     AppendVertices();
     AppendTriangles();
@@ -267,10 +272,20 @@ class Surface {
       const KeptTriangles::Choice choice = state_.kept.For(node, sight, list_.frames[frame], error_px);
       if (node.visible)
         statistics_.achieved_error_px = std::max(statistics_.achieved_error_px, choice.worst * error_px);
-      state_.morph.Place(node, list_.frames[frame], choice.is_new, *choice.mesh);
       chosen_.push_back({choice.mesh, frame, choice.is_new, static_cast<float>(choice.worst * error_px)});
       first_vertex_.push_back(vertices);
       vertices += static_cast<uint32_t>(choice.mesh->vertices.size());
+    }
+  }
+
+  void Place() {
+    std::unordered_map<Quadcode, const KeptMesh*> unchanged;
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+      if (!chosen_[i].is_new) unchanged.emplace(nodes_[i].node, chosen_[i].mesh);
+    }
+    state_.morph.Prepare(unchanged);
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+      state_.morph.Place(nodes_[i], list_.frames[chosen_[i].frame], chosen_[i].is_new, *chosen_[i].mesh);
     }
   }
 
@@ -306,11 +321,13 @@ class Surface {
   }
 
   void AppendVertices() {
+    if (!nodes_.empty()) list_.vertices.resize(first_vertex_.back() + chosen_.back().mesh->vertices.size());
     for (uint32_t i = 0; i < nodes_.size(); ++i) {
       const KeptMesh& mesh = *chosen_[i].mesh;
+      ListVertex* next = list_.vertices.data() + first_vertex_[i];
       for (const ListVertex& vertex : mesh.vertices) {
-        list_.vertices.push_back(vertex);
-        list_.vertices.back().place = ListVertex::PlaceOf(i, vertex.post());
+        *next = vertex;
+        next++->place = ListVertex::PlaceOf(i, vertex.post());
       }
       statistics_.rises_until_s = std::max(statistics_.rises_until_s, mesh.rises_until_s);
     }

@@ -12,10 +12,13 @@ namespace {
 constexpr uint32_t kEmpty = 0xFFFFFFFF;
 constexpr int kMostAncestors = 8;  // between a quadnode and what was drawn in its place, to be worth a search
 
-GridPoint PositionOf(Quadcode node, uint32_t post) {
-  const GridPoint corner = node.SouthWest();
-  return {corner.x + post % kPosts * node.PostSpacing(), corner.y + post / kPosts * node.PostSpacing()};
-}
+// Where the posts of a quadnode lie on the grid.
+struct PostGrid {
+  GridPoint corner;
+  uint32_t spacing;
+  explicit PostGrid(Quadcode node) : corner(node.SouthWest()), spacing(node.PostSpacing()) {}
+  GridPoint At(uint32_t post) const { return {corner.x + post % kPosts * spacing, corner.y + post / kPosts * spacing}; }
+};
 
 bool IsPole(GridPoint position) {
   return position.y == 0 || position.y == kGridNorthPole;
@@ -48,7 +51,8 @@ glm::vec3 PointOf(const ListVertex& vertex) {
 // Where the old surface was at the posts of one quadnode, in its frame.
 class OldSurface {
  public:
-  OldSurface(SurfaceMorph& morph, Quadcode node, const Frame& frame) : morph_(morph), node_(node), frame_(frame) {
+  OldSurface(SurfaceMorph& morph, Quadcode node, const Frame& frame)
+      : morph_(morph), node_(node), grid_(node), frame_(frame) {
     morph.found_.resize(kVerticesPerPage);
     ++morph.round_;
   }
@@ -63,7 +67,7 @@ class OldSurface {
 
  private:
   std::optional<glm::vec3> Find(Post post) {
-    const GridPoint position = PositionOf(node_, static_cast<uint32_t>(post.index()));
+    const GridPoint position = grid_.At(static_cast<uint32_t>(post.index()));
     if (IsPole(position)) return std::nullopt;
     if (const auto old = morph_.OldVertexAt(position)) return morph_.OldPointIn(frame_, *old);
     if (LevelOf(post) == kNoLevel) {
@@ -81,7 +85,7 @@ class OldSurface {
   std::optional<glm::dvec3> OfAncestor(Quadcode node, Post corner, int ancestors_left) {
     if (node.is_root() || ancestors_left == 0) return std::nullopt;
     const Quadcode parent = node.Parent();
-    const GridPoint position = PositionOf(node, static_cast<uint32_t>(corner.index()));
+    const GridPoint position = PostGrid(node).At(static_cast<uint32_t>(corner.index()));
     const GridPoint origin = parent.SouthWest();
     return AmongPosts(parent,
                       {static_cast<int>((position.x - origin.x) / parent.PostSpacing()),
@@ -89,7 +93,7 @@ class OldSurface {
                       ancestors_left - 1);
   }
   std::optional<glm::dvec3> AmongPosts(Quadcode node, Post post, int ancestors_left) {
-    const GridPoint position = PositionOf(node, static_cast<uint32_t>(post.index()));
+    const GridPoint position = PostGrid(node).At(static_cast<uint32_t>(post.index()));
     if (IsPole(position)) return std::nullopt;
     if (const auto old = morph_.OldVertexAt(position)) return morph_.OldPointEcef(*old);
     if (LevelOf(post) == kNoLevel) return OfAncestor(node, post, ancestors_left);
@@ -102,6 +106,7 @@ class OldSurface {
 
   SurfaceMorph& morph_;
   const Quadcode node_;
+  const PostGrid grid_;
   const Frame& frame_;
 };
 
@@ -125,7 +130,6 @@ void SurfaceMorph::Place(const CutNode& node, const Frame& frame, bool is_new, K
     if (mesh.rises_until_s <= now_s_) mesh.rises_from_s = mesh.rises_until_s = 0;
     return;
   }
-  IndexOldVertices();
   OldSurface old(*this, node.node, frame);
   const double least_m = kUnseen_px / PixelsPerMetre(node);
   double most_m = 0;
@@ -146,9 +150,8 @@ void SurfaceMorph::Place(const CutNode& node, const Frame& frame, bool is_new, K
 
 void SurfaceMorph::PlaceShared(const CutNode& node, const Frame& frame, uint16_t vertex, KeptMesh& mesh) {
   if (jump_ || !node.visible) return;
-  IndexOldVertices();
   ListVertex& shared = mesh.vertices[vertex];
-  const GridPoint position = PositionOf(node.node, shared.post());
+  const GridPoint position = PostGrid(node.node).At(shared.post());
   if (IsPole(position)) return;
   const auto old = OldVertexAt(position);
   if (!old || old_draws_[old_vertices_[*old].draw()].node == node.node) return;
@@ -176,34 +179,39 @@ void SurfaceMorph::Remember(const DisplayList& list, std::span<const uint32_t> r
   old_frames_ = list.frames;
   old_ranked_.assign(ranked.begin(), ranked.end());
   old_first_vertex_.assign(first_vertex.begin(), first_vertex.end());
-  indexed_ = false;
 }
 
-void SurfaceMorph::IndexOldVertices() {
-  if (indexed_) return;
-  indexed_ = true;
+void SurfaceMorph::Prepare(const std::unordered_map<Quadcode, const KeptMesh*>& unchanged) {
+  if (jump_) return;
   table_.assign(std::bit_ceil(2 * old_vertices_.size() + 1), kEmpty);
-  const size_t mask = table_.size() - 1;
+  positions_.resize(old_vertices_.size());
   for (const uint32_t draw : old_ranked_) {
-    const size_t end = draw + 1 < old_first_vertex_.size() ? old_first_vertex_[draw + 1] : old_vertices_.size();
-    for (size_t vertex = old_first_vertex_[draw]; vertex < end; ++vertex) {
-      const GridPoint position = PositionOf(old_draws_[draw].node, old_vertices_[vertex].post());
-      size_t entry = HashOf(position, mask);
-      // Of several at one place the first is the one that is drawn.
-      while (table_[entry] != kEmpty && PositionOf(old_draws_[old_vertices_[table_[entry]].draw()].node,
-                                                   old_vertices_[table_[entry]].post()) != position) {
-        entry = (entry + 1) & mask;
+    const PostGrid grid(old_draws_[draw].node);
+    const uint32_t first = old_first_vertex_[draw];
+    if (const auto found = unchanged.find(old_draws_[draw].node); found != unchanged.end()) {
+      for (const uint16_t own : found->second->border_vertices) {
+        Index(first + own, grid.At(old_vertices_[first + own].post()));
       }
-      if (table_[entry] == kEmpty) table_[entry] = static_cast<uint32_t>(vertex);
+      continue;
     }
+    const size_t end = draw + 1 < old_first_vertex_.size() ? old_first_vertex_[draw + 1] : old_vertices_.size();
+    for (uint32_t vertex = first; vertex < end; ++vertex) Index(vertex, grid.At(old_vertices_[vertex].post()));
   }
+}
+
+void SurfaceMorph::Index(uint32_t vertex, GridPoint position) {
+  const size_t mask = table_.size() - 1;
+  positions_[vertex] = position;
+  size_t entry = HashOf(position, mask);
+  // Of several at one place the first is the one that is drawn.
+  while (table_[entry] != kEmpty && positions_[table_[entry]] != position) entry = (entry + 1) & mask;
+  if (table_[entry] == kEmpty) table_[entry] = vertex;
 }
 
 std::optional<uint32_t> SurfaceMorph::OldVertexAt(GridPoint position) const {
   const size_t mask = table_.size() - 1;
   for (size_t entry = HashOf(position, mask); table_[entry] != kEmpty; entry = (entry + 1) & mask) {
-    const ListVertex& vertex = old_vertices_[table_[entry]];
-    if (PositionOf(old_draws_[vertex.draw()].node, vertex.post()) == position) return table_[entry];
+    if (positions_[table_[entry]] == position) return table_[entry];
   }
   return std::nullopt;
 }

@@ -21,6 +21,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 namespace belvedere {
@@ -35,6 +36,10 @@ class SurfaceMorph {
   // A list for that time begins. jump: the surface may jump, for the eye has.
   void Begin(double now_s, bool jump);
 
+  // All meshes of the list are chosen. unchanged: those that are as the old list had them; of these only the border is
+  // looked for again.
+  void Prepare(const std::unordered_map<Quadcode, const KeptMesh*>& unchanged);
+
   // Gives the rises of a quadnode's vertices for now. is_new: its mesh was chosen for this list.
   void Place(const CutNode& node, const Frame& frame, bool is_new, KeptMesh& mesh);
   // The same for one vertex that neighbours share, of a mesh that is not new: whose vertex is drawn there may have
@@ -47,7 +52,7 @@ class SurfaceMorph {
  private:
   friend class OldSurface;
 
-  void IndexOldVertices();
+  void Index(uint32_t vertex, GridPoint position);
   std::optional<uint32_t> OldVertexAt(GridPoint position) const;
   glm::vec3 OldPointIn(const Frame& frame, uint32_t vertex) const;
   glm::dvec3 OldPointEcef(uint32_t vertex) const;
@@ -55,13 +60,13 @@ class SurfaceMorph {
 
   double now_s_ = 0;
   bool jump_ = true;
-  bool indexed_ = false;  // the table is that of the old list
   double old_s_ = 0;
   std::vector<ListVertex> old_vertices_;
   std::vector<TerrainDraw> old_draws_;
   std::vector<Frame> old_frames_;
   std::vector<uint32_t> old_ranked_, old_first_vertex_;
-  std::vector<uint32_t> table_;  // old vertices by their place on the grid, open addressing
+  std::vector<GridPoint> positions_;  // of the old vertices that are in the table
+  std::vector<uint32_t> table_;       // old vertices by their place on the grid, open addressing
 
   struct Found {
     uint32_t round = 0;

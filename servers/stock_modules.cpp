@@ -1,9 +1,8 @@
 #include "servers/stock_modules.h"
 
-#include "runtime/earth/geoid.h"
+#include "servers/image_modules.h"
 #include "servers/mip_levels.h"
 #include "servers/model_reader.h"
-#include "servers/shaded_relief.h"
 #include "servers/terrain_builder.h"
 
 #include <algorithm>
@@ -135,23 +134,6 @@ ReadModule TerrainModule(const Dataset& dataset, const std::optional<int>& layer
   return module;
 }
 
-ReadModule ReliefModule(const ReadModule& elevation) {
-  ReadModule module;
-  module.layer = kReliefLayer;
-  module.kind = PageKind::kOverlay;
-  module.role = LayerRole::kMultiply;
-  module.max_level = elevation.max_level;
-  module.exists = elevation.exists;
-  std::shared_ptr<const Geoid> sea;  // without it, the sea is that of the ellipsoid: relief hardly differs
-  if (Result<std::shared_ptr<const Geoid>> geoid = Geoid::LoadEgm96(); geoid.ok()) sea = *geoid;
-  module.read = [sea, type = elevation.type](ReadContext& context, Quadcode node) -> Result<std::unique_ptr<Page>> {
-    const Result<PagePin> heights = context.Obtain(type, node);
-    if (!heights.ok()) return heights.status();
-    return std::unique_ptr<Page>(ShadeRelief(heights->as<ElevationPage>(), node, sea.get()));
-  };
-  return module;
-}
-
 ReadModule ModelModule(const ModelCatalogue& models) {
   ReadModule module;
   module.layer = kModelLayer;
@@ -185,7 +167,10 @@ Status RegisterStockModules(ModuleRegistry& registry, const Dataset& dataset, co
 
   std::vector<ReadModule> made;
   made.push_back(TerrainModule(dataset, layer, elevation != nullptr ? elevation->type : DataType{0}, options));
-  if (elevation != nullptr) made.push_back(ReliefModule(*elevation));
+  for (ReadModule& module : ModulesOfQuadnodes(made.front())) made.push_back(std::move(module));
+  if (elevation != nullptr) {
+    for (ReadModule& module : ModulesOfHeights(*elevation)) made.push_back(std::move(module));
+  }
   made.push_back(ModelModule(models));
   for (ReadModule& module : made) {
     const Status added = registry.Add(std::move(module));

@@ -2,9 +2,13 @@
 //
 //   (dataset's own)  each elevation and imagery layer of the dataset, by its name; imagery gets its mip levels here
 //   terrain          what is drawn of heights: of the first elevation layer, wherever any elevation or imagery exists,
-//   so
-//                    that imagery finer than the heights has a surface to lie on. All 32 roots always exist
-//   relief           shaded relief, where heights exist
+//                    so that imagery finer than the heights has a surface to lie on. All 32 roots always exist
+//   grid             lines of latitude and longitude, where terrain exists
+//   quadcodes        borders and names of quadnodes, where terrain exists
+//   relief           shaded relief, where heights exist; so too
+//   slope            colours by steepness,
+//   contours         lines of equal height above the sea,
+//   water            and where the sea is
 //   model            the models of the catalogue
 //
 // A damaged elevation page is marked failed, with its reason; the terrain there is made of its ancestor's heights, in
@@ -21,7 +25,12 @@
 namespace belvedere {
 
 inline constexpr const char* kTerrainLayer = "terrain";
+inline constexpr const char* kGridLayer = "grid";
+inline constexpr const char* kQuadcodeLayer = "quadcodes";
 inline constexpr const char* kReliefLayer = "relief";
+inline constexpr const char* kSlopeLayer = "slope";
+inline constexpr const char* kContourLayer = "contours";
+inline constexpr const char* kWaterLayer = "water";
 inline constexpr const char* kModelLayer = "model";
 
 struct StockOptions {

@@ -44,7 +44,14 @@ TEST(StockModules, MakeALayerTable) {
   EXPECT_EQ(house.layer("terrain").kind, PageKind::kTerrain);
   EXPECT_EQ(house.layer("relief").kind, PageKind::kOverlay);
   EXPECT_EQ(house.layer("model").kind, PageKind::kModel);
-  EXPECT_EQ(house.paging().layers.size(), 5);
+  EXPECT_EQ(house.layer("slope").kind, PageKind::kColour);
+  EXPECT_EQ(house.layer("contours").kind, PageKind::kColour);
+  EXPECT_EQ(house.layer("grid").kind, PageKind::kColour);
+  EXPECT_EQ(house.layer("quadcodes").kind, PageKind::kColour);
+  EXPECT_EQ(house.layer("water").kind, PageKind::kOverlay);
+  EXPECT_EQ(house.layer("relief").role, LayerRole::kMultiply);
+  EXPECT_EQ(house.layer("water").role, LayerRole::kWater);
+  EXPECT_EQ(house.paging().layers.size(), 10);
   for (int tree = 0; tree < kTrees; ++tree) EXPECT_TRUE(house.layer("terrain").exists(Quadcode::Root(tree)));
 }
 
@@ -84,6 +91,20 @@ TEST(StockModules, ReadEveryKindOfPage) {
   ASSERT_TRUE(model.ok()) << model.message();
   EXPECT_FALSE(model->as<ModelPage>().details.empty());
   EXPECT_FALSE(house.layer("model").exists(ModelCatalogue::ModelNode(1)));
+}
+
+TEST(StockModules, MadeImagesHaveTheFormatOfTheirKindAndExistWithWhatTheyAreMadeOf) {
+  House house;
+  for (const char* name : {"slope", "contours", "water", "grid", "quadcodes"}) {
+    const Layer& layer = house.layer(name);
+    const Result<PagePin> page = house.Read(name, kFine.Child(3));
+    ASSERT_TRUE(page.ok()) << name << ": " << page.message();
+    const auto& image = page->as<ImagePage>();
+    EXPECT_EQ(image.format, layer.kind == PageKind::kColour ? ImageFormat::kRGBA8 : ImageFormat::kR8) << name;
+    EXPECT_EQ(image.texels.size(), ImagePage::MipOffset(kImageMipLevels, image.format)) << name;
+    const bool of_quadnodes = name == std::string_view("grid") || name == std::string_view("quadcodes");
+    EXPECT_EQ(layer.exists(kOtherRoot.Child(1)), of_quadnodes) << name;  // imagery alone
+  }
 }
 
 TEST(StockModules, HeightsAreTakenFromTheCache) {
