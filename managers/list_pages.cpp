@@ -16,6 +16,7 @@ ListPages::Known& ListPages::Look(const PageKey& key) {
   const std::optional<int> slot = key.type == terrain_ ? std::nullopt : known.page->residency()->TryPin();
   if (slot) {
     known.slot = *slot;
+    if (int* count = CountOf(key)) ++*count;
     list_.gpu_pins.push_back(known.page->residency().get());
   }
   list_.page_pins.push_back(std::move(pin));
@@ -34,15 +35,37 @@ std::optional<int> ListPages::Slot(const PageKey& key) {
 bool ListPages::Want(const PageKey& key, float priority) {
   Known& known = Look(key);
   if (known.wanted) return true;
+  if (!HasRoomFor(key)) {
+    at_limit_ = true;
+    return false;
+  }
   if (known.page != nullptr) {
     known.wanted = true;
+    if (int* count = CountOf(key)) ++*count;
     uploads_.push_back({priority, paging_.cache.Find(key)});
     return true;
   }
   if (!paging_.cache.FailureOf(key).ok()) return false;
   known.wanted = true;
+  if (int* count = CountOf(key)) ++*count;
   wishes_.push_back({key, priority});
   return true;
+}
+
+int* ListPages::CountOf(const PageKey& key) {
+  switch (paging_.layers.at(key.type).kind) {
+    case PageKind::kColour: return &colour_;
+    case PageKind::kOverlay: return &overlay_;
+    case PageKind::kElevation:
+    case PageKind::kTerrain:
+    case PageKind::kModel: break;
+  }
+  return nullptr;
+}
+
+bool ListPages::HasRoomFor(const PageKey& key) {
+  const int* count = CountOf(key);
+  return count == nullptr || *count < (count == &colour_ ? limits_.colour : limits_.overlay);
 }
 
 void ListPages::Finish(ViewId view, Queues queues) {

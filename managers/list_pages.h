@@ -12,10 +12,18 @@
 
 namespace belvedere {
 
+// How many images a list may use: what it asks for beyond that would find no place on the GPU and be waited for in
+// vain.
+struct ImageLimits {
+  int colour = 1 << 16;
+  int overlay = 1 << 16;
+};
+
 class ListPages final : public PageAccess {
  public:
   // Pages are pinned into `list`. REQUIRES: the list is clear and outlives this.
-  ListPages(Paging& paging, DataType terrain, DisplayList& list) : paging_(paging), terrain_(terrain), list_(list) {}
+  ListPages(Paging& paging, DataType terrain, DisplayList& list, ImageLimits limits = {})
+      : paging_(paging), terrain_(terrain), list_(list), limits_(limits) {}
 
   const TerrainPage* Terrain(Quadcode node) override;
   std::optional<int> Slot(const PageKey& key) override;
@@ -28,6 +36,7 @@ class ListPages final : public PageAccess {
   enum class Queues { kTerrain, kObjects };
   // Sends the wishes of that view to those queues and sorts the list's uploads, most wanted first.
   void Finish(ViewId view, Queues queues);
+  bool at_limit() const { return at_limit_; }  // an image was refused for ImageLimits
   size_t pages_waiting() const { return wishes_.size() + uploads_.size(); }
 
  private:
@@ -42,6 +51,9 @@ class ListPages final : public PageAccess {
     bool wanted = false;
   };
   Known& Look(const PageKey& key);
+  // Of the images that the list uses and wants, those of the key's kind; nullptr: it is no image.
+  int* CountOf(const PageKey& key);
+  bool HasRoomFor(const PageKey& key);
 
   struct Upload {
     float priority;
@@ -51,6 +63,9 @@ class ListPages final : public PageAccess {
   Paging& paging_;
   const DataType terrain_;
   DisplayList& list_;
+  const ImageLimits limits_;
+  int colour_ = 0, overlay_ = 0;
+  bool at_limit_ = false;
   std::unordered_map<PageKey, Known, KeyHash> known_;
   std::vector<Wish> wishes_;
   std::vector<Upload> uploads_;

@@ -19,17 +19,19 @@ namespace {
 
 constexpr double kListsPerSecond = 34.0;
 constexpr double kPinnedShareOfBudget = 0.8;  // of the cache; over it, cuts stop growing
+constexpr double kShareOfSlots = 0.8;         // for images of one list; the ones before it hold others for a moment
 constexpr double kRateSmoothing = 0.1;
 
 }  // namespace
 
 class TerrainManager::Worker {
  public:
-  Worker(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, const Clock& clock)
+  Worker(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, ImageLimits slots, const Clock& clock)
       : view_id_(view),
         paging_(paging),
         channel_(std::move(channel)),
         clock_(clock),
+        image_limits_{static_cast<int>(kShareOfSlots * slots.colour), static_cast<int>(kShareOfSlots * slots.overlay)},
         terrain_(TerrainType(paging.layers)),
         thread_("terrain manager", kListsPerSecond, [this] { Step(); }) {}
 
@@ -75,7 +77,7 @@ class TerrainManager::Worker {
     ViewParameters held = view;
     held.error_px = bound_.Next(view, *channel_->frame.Get(), number_ + 1);
     list.statistics.held_error_px = held.error_px;
-    ListPages pages(paging_, terrain_, list);
+    ListPages pages(paging_, terrain_, list, image_limits_);
     CutLimits limits;
     if (static_cast<double>(paging_.cache.PinnedBytes()) >
         kPinnedShareOfBudget * static_cast<double>(paging_.cache.budget_bytes())) {
@@ -99,7 +101,7 @@ class TerrainManager::Worker {
     statistics.nodes = static_cast<uint32_t>(cut.nodes.size());
     statistics.achieved_error_px = mesh.achieved_error_px + cut.left_over_error_px;
     statistics.pages_waiting = static_cast<uint32_t>(pages.pages_waiting());
-    statistics.behind = cut.behind;
+    statistics.behind = cut.behind || pages.at_limit();
     statistics.rises_until_s = mesh.rises_until_s;
     statistics.settled = !cut.waiting && pages.pages_waiting() == 0 && !cut.nodes.empty();
     was_settled_ = statistics.settled;
@@ -109,6 +111,7 @@ class TerrainManager::Worker {
   Paging& paging_;
   const std::shared_ptr<ViewChannel> channel_;
   const Clock& clock_;
+  const ImageLimits image_limits_;
   const DataType terrain_;
   uint64_t number_ = 0;
   uint64_t settled_number_ = 0;
@@ -122,8 +125,9 @@ class TerrainManager::Worker {
   PacedThread thread_;  // last: it stops before the members above go
 };
 
-TerrainManager::TerrainManager(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, const Clock& clock)
-    : worker_(std::make_unique<Worker>(view, paging, std::move(channel), clock)), view_(view), paging_(paging) {}
+TerrainManager::TerrainManager(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, ImageLimits slots,
+                               const Clock& clock)
+    : worker_(std::make_unique<Worker>(view, paging, std::move(channel), slots, clock)), view_(view), paging_(paging) {}
 
 TerrainManager::~TerrainManager() {
   worker_.reset();

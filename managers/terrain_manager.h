@@ -8,6 +8,7 @@
 // Threads: constructed and destroyed by the UI thread; destroying stops the thread and withdraws the view's wishes.
 #pragma once
 
+#include "managers/list_pages.h"
 #include "runtime/base/clock.h"
 #include "runtime/paging/paging.h"
 #include "runtime/scene/view_channel.h"
@@ -18,7 +19,9 @@ namespace belvedere {
 
 class TerrainManager {
  public:
-  TerrainManager(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, const Clock& clock);
+  // slots: for images on the GPU, of all views. A list uses no more than fit; what they would sharpen stays coarser.
+  TerrainManager(ViewId view, Paging& paging, std::shared_ptr<ViewChannel> channel, ImageLimits slots,
+                 const Clock& clock);
   ~TerrainManager();
   TerrainManager(const TerrainManager&) = delete;
   TerrainManager& operator=(const TerrainManager&) = delete;

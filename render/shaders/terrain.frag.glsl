@@ -69,7 +69,8 @@ float Glint() {
   float slopes = exp2(-1.442695 * tan2 / kMeanSquareSlope) / (kMeanSquareSlope * c * c * c * c);
   float f = 1.0 - max(dot(facet, eye), 0.0);
   float fresnel = 0.02 + 0.98 * f * f * f * f * f;
-  return min(fresnel * slopes / (4.0 * max(dot(up, eye), 0.1)), 1.0);
+  // The eye, or a film, gives way to what is very bright.
+  return 1.0 - exp2(-0.8 * fresnel * slopes / (4.0 * max(dot(up, eye), 0.15)));
 }
 #endif
 

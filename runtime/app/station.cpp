@@ -17,7 +17,7 @@ constexpr size_t kMostFailuresShown = 3;
 
 Result<std::unique_ptr<Station>> Station::Start(const StationOptions& options, const Clock& clock,
                                                 std::unique_ptr<Context> context) {
-  std::unique_ptr<Station> station(new Station(clock));
+  std::unique_ptr<Station> station(new Station(clock, {options.render.colour_slots, options.render.overlay_slots}));
   if (Status status = station->StartPaging(options); !status.ok()) return status;
   ObjectTable::Options table;
   table.timeout_s = options.feed.timeout_s;
@@ -102,7 +102,7 @@ ViewChannel& Station::AddView(const ViewParameters& first, Presenter* presenter)
   View& view = views_[first.view];
   view.channel = std::make_shared<ViewChannel>();
   view.channel->parameters.Publish(first);
-  view.terrain = std::make_unique<TerrainManager>(first.view, *paging_, view.channel, clock_);
+  view.terrain = std::make_unique<TerrainManager>(first.view, *paging_, view.channel, image_slots_, clock_);
   view.objects =
       std::make_unique<ObjectManager>(first.view, *paging_, catalogue_.looks, *objects_, view.channel, clock_);
   render_->AddView(first.view, view.channel, presenter);

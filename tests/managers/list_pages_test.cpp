@@ -93,6 +93,22 @@ TEST_F(ListPagesTest, WhatItHandsOutStaysUntilTheListIsCleared) {
   EXPECT_EQ(paging_.cache.PinnedBytes(), 0U);
 }
 
+// Otherwise a view would wait for ever for images that find no place.
+TEST_F(ListPagesTest, NoMoreImagesAreWantedThanFit) {
+  PutImage(Quadcode::Root(0)).page().residency()->Place(1);
+  PutImage(Quadcode::Root(1));
+  ListPages pages(paging_, kTerrain, list_, {.colour = 3});
+  EXPECT_TRUE(pages.Slot({kImagery, Quadcode::Root(0)}));     // one is there,
+  EXPECT_TRUE(pages.Want({kImagery, Quadcode::Root(1)}, 1));  // one waits for its upload,
+  EXPECT_TRUE(pages.Want({kImagery, Quadcode::Root(2)}, 1));  // and one is to be read
+  EXPECT_TRUE(pages.Want({kImagery, Quadcode::Root(2)}, 1));  // as it was
+  EXPECT_FALSE(pages.at_limit());
+  EXPECT_FALSE(pages.Want({kImagery, Quadcode::Root(3)}, 1));
+  EXPECT_TRUE(pages.at_limit());
+  EXPECT_TRUE(pages.Want({kTerrain, Quadcode::Root(3)}, 1)) << "terrain needs no place there";
+  EXPECT_EQ(pages.pages_waiting(), 3U);
+}
+
 TEST_F(ListPagesTest, AFailedPageIsNotWishedForAgain) {
   paging_.cache.MarkFailed({kImagery, node_}, Status::Error("damaged"));
   ListPages pages(paging_, kTerrain, list_);

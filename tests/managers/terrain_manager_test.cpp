@@ -50,7 +50,7 @@ class TerrainManagerTest : public testing::Test {
 };
 
 TEST_F(TerrainManagerTest, GoesFromNothingToASettledCut) {
-  TerrainManager manager(1, paging_, channel_, Clock::System());
+  TerrainManager manager(1, paging_, channel_, {}, Clock::System());
   uint32_t nodes = 0;
   while (true) {
     const DisplayList& list = NextList();
@@ -69,7 +69,7 @@ TEST_F(TerrainManagerTest, GoesFromNothingToASettledCut) {
 }
 
 TEST_F(TerrainManagerTest, ANewViewGivesANewList) {
-  TerrainManager manager(1, paging_, channel_, Clock::System());
+  TerrainManager manager(1, paging_, channel_, {}, Clock::System());
   while (!NextList().statistics.settled) Serve();
   view_.number = 2;
   view_.eye_ecef = ToEcef({20, 30, 2e6});
@@ -82,7 +82,7 @@ TEST_F(TerrainManagerTest, ANewViewGivesANewList) {
 
 TEST_F(TerrainManagerTest, WithdrawsItsWishesWhenItEnds) {
   {
-    TerrainManager manager(1, paging_, channel_, Clock::System());
+    TerrainManager manager(1, paging_, channel_, {}, Clock::System());
     NextList();
   }
   EXPECT_EQ(paging_.queue(kTerrain).Stats().waiting, 0U);
