@@ -69,30 +69,37 @@ std::optional<Quadcode> Beside(Quadcode node, int east, int north) {
   return Quadcode::FromColumnRow(node.level(), node.column() + east, row);
 }
 
-// TerrainInput::border_errors_m of a quadnode without finer heights.
-ErrorBlocks BorderErrors(ReadContext& context, const Dataset& dataset, int layer, DataType type, Quadcode node) {
-  ErrorBlocks errors_m{};
-  struct Side {
+// Whether there is terrain: wherever any layer of the dataset has a page.
+bool TerrainExists(const Dataset& dataset, Quadcode node) {
+  if (node.is_root()) return true;
+  for (int any = 0; any < static_cast<int>(dataset.layers().size()); ++any) {
+    if (dataset.Exists(any, node)) return true;
+  }
+  return false;
+}
+
+// Lays the borders beyond which the heights are coarser on the surface there. REQUIRES: the input has heights.
+void LayBorders(ReadContext& context, const Dataset& dataset, int layer, DataType type, TerrainInput& input) {
+  struct Way {
+    Side side;
     int east, north;
   };
-  for (const Side side : {Side{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
-    const std::optional<Quadcode> neighbour = Beside(node, side.east, side.north);
-    if (!neighbour || !dataset.Exists(layer, *neighbour) || !dataset.HasChildren(layer, *neighbour)) continue;
-    const Result<PagePin> page = context.Obtain(type, *neighbour);
-    if (!page.ok()) continue;  // marked in the cache; its ground is an ancestor's, as smooth as this
-    const ErrorBlocks& theirs_m = page->as<ElevationPage>().block_errors_m;
-    for (int along = 0; along < kErrorBlocks; ++along) {
-      constexpr int kLast = kErrorBlocks - 1;
-      const auto block = [&](int at_low, int at_high) {
-        const int column = side.east == 0 ? along : side.east < 0 ? at_low : at_high;
-        const int row = side.north == 0 ? along : side.north < 0 ? at_low : at_high;
-        return static_cast<size_t>(row * kErrorBlocks + column);
-      };
-      float& own_m = errors_m[block(0, kLast)];
-      own_m = std::max(own_m, theirs_m[block(kLast, 0)]);
+  for (const Way way : {Way{Side::kWest, -1, 0}, {Side::kEast, 1, 0}, {Side::kSouth, 0, -1}, {Side::kNorth, 0, 1}}) {
+    const std::optional<Quadcode> beside = Beside(input.node, way.east, way.north);
+    if (!beside || input.heights_node.Contains(*beside)) continue;
+    if (dataset.Exists(layer, beside->Ancestor(input.heights_node.level()))) continue;
+    TerrainInput coarser{
+        .node = *beside, .heights = nullptr, .heights_node = *beside, .exaggeration = input.exaggeration};
+    while (!TerrainExists(dataset, coarser.node)) coarser.node = coarser.node.Parent();
+    const std::optional<Heights> heights = FinestHeights(context, dataset, layer, type, coarser.node);
+    if (heights) {
+      coarser.heights = &heights->pin.as<ElevationPage>();
+      coarser.heights_node = heights->node;
     }
+    const Side facing = static_cast<Side>(static_cast<unsigned>(way.side) ^ 1U);
+    input.laid_ecef[static_cast<size_t>(way.side)] =
+        LaidOn(input.node, way.side, coarser.node, BorderPosts(coarser, facing));
   }
-  return errors_m;
 }
 
 Result<std::unique_ptr<Page>> ReadTerrain(ReadContext& context, const Dataset& dataset, const std::optional<int>& layer,
@@ -108,9 +115,7 @@ Result<std::unique_ptr<Page>> ReadTerrain(ReadContext& context, const Dataset& d
     input.heights_node = heights->node;
   }
   input.finer_exists = dataset.HasChildren(*layer, node);
-  if (heights && heights->node == node && !input.finer_exists) {
-    input.border_errors_m = BorderErrors(context, dataset, *layer, elevation, node);
-  }
+  if (heights) LayBorders(context, dataset, *layer, elevation, input);
   return std::unique_ptr<Page>(BuildTerrain(input));
 }
 
@@ -121,13 +126,7 @@ ReadModule TerrainModule(const Dataset& dataset, const std::optional<int>& layer
   module.kind = PageKind::kTerrain;
   module.threads = options.terrain_threads;
   for (const LayerRecord& record : dataset.layers()) module.max_level = std::max(module.max_level, record.max_level);
-  module.exists = [&dataset](Quadcode node) {
-    if (node.is_root()) return true;
-    for (int any = 0; any < static_cast<int>(dataset.layers().size()); ++any) {
-      if (dataset.Exists(any, node)) return true;
-    }
-    return false;
-  };
+  module.exists = [&dataset](Quadcode node) { return TerrainExists(dataset, node); };
   module.read = [&dataset, layer, elevation, exaggeration = options.exaggeration](ReadContext& context, Quadcode node) {
     return ReadTerrain(context, dataset, layer, elevation, node, exaggeration);
   };

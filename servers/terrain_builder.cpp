@@ -98,6 +98,31 @@ std::vector<TerrainVertex> VerticesOf(Quadcode node, const HeightField& field) {
   return vertices;
 }
 
+int PostOf(Side side, int along) {
+  switch (side) {
+    case Side::kWest: return along * kPosts;
+    case Side::kEast: return along * kPosts + kCells;
+    case Side::kSouth: return along;
+    case Side::kNorth: return kCells * kPosts + along;
+  }
+  return 0;
+}
+
+// Moves the border's vertices to where they are laid; widens the range of heights to theirs.
+void Lay(const std::vector<glm::dvec3>& posts_ecef, Side side, const Frame& frame, TerrainPage& page) {
+  for (int along = 0; along < kPosts; ++along) {
+    const glm::dvec3& ecef = posts_ecef[static_cast<size_t>(along)];
+    const glm::dvec3 local = frame.ToFrame(ecef);
+    TerrainVertex& vertex = page.vertices[static_cast<size_t>(PostOf(side, along))];
+    vertex.x = static_cast<float>(local.x);
+    vertex.y = static_cast<float>(local.y);
+    vertex.z = static_cast<float>(local.z);
+    const auto height_m = static_cast<float>(ToGeodetic(ecef).height_m);
+    page.min_height_m = std::min(page.min_height_m, height_m);
+    page.max_height_m = std::max(page.max_height_m, height_m);
+  }
+}
+
 // How far the ellipsoid rises over a straight line across one cell of the quadnode.
 double CellSagitta(Quadcode node) {
   const double cell_radians = node.SizeDegrees() / kCells * kRadiansPerDegree;
@@ -146,6 +171,36 @@ BoundingSphere BoundsOf(Quadcode node, double min_height_m, double max_height_m)
   return sphere;
 }
 
+std::vector<glm::dvec3> BorderPosts(const TerrainInput& input, Side side) {
+  const HeightField field = SampleHeights(input.node, input.heights, input.heights_node, input.exaggeration);
+  const std::array<RowGeometry, kPosts> rows = RowsOf(input.node);
+  const std::array<ColumnGeometry, kPosts> columns = ColumnsOf(input.node);
+  std::vector<glm::dvec3> posts;
+  posts.reserve(kPosts);
+  for (int along = 0; along < kPosts; ++along) {
+    const int post = PostOf(side, along);
+    posts.push_back(EcefAt(rows[static_cast<size_t>(post / kPosts)], columns[static_cast<size_t>(post % kPosts)],
+                           field.height_m[static_cast<size_t>(post)]));
+  }
+  return posts;
+}
+
+std::vector<glm::dvec3> LaidOn(Quadcode node, Side side, Quadcode coarser, const std::vector<glm::dvec3>& posts) {
+  BELVEDERE_CHECK(coarser.level() <= node.level() && posts.size() == kPosts);
+  const bool meridian = side == Side::kWest || side == Side::kEast;
+  const auto along_of = [&](Quadcode of) { return meridian ? of.SouthWest().y : of.SouthWest().x; };
+  const uint32_t start = along_of(node) - along_of(coarser);  // wraps at 180 E
+  std::vector<glm::dvec3> laid;
+  laid.reserve(kPosts);
+  for (uint32_t along = 0; along < kPosts; ++along) {
+    const double position = static_cast<double>(start + along * node.PostSpacing()) / coarser.PostSpacing();
+    const size_t first = std::min(static_cast<size_t>(position), size_t{kCells} - 1);
+    const double share = position - static_cast<double>(first);
+    laid.push_back((1.0 - share) * posts[first] + share * posts[first + 1]);
+  }
+  return laid;
+}
+
 std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input) {
   BELVEDERE_CHECK(input.exaggeration > 0);
   const HeightField field = SampleHeights(input.node, input.heights, input.heights_node, input.exaggeration);
@@ -173,16 +228,17 @@ std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input) {
   page->node = input.node;
   page->vertices = VerticesOf(input.node, field);
   page->error_m = *std::max_element(errors_m.begin(), errors_m.end());
-  for (size_t block = 0; block < errors_m.size(); ++block) {
-    const float beside_m = input.border_errors_m[block] * static_cast<float>(input.exaggeration);
-    errors_m[block] = std::max(errors_m[block], beside_m);
+  page->min_height_m = static_cast<float>(min_height_m);
+  page->max_height_m = static_cast<float>(max_height_m);
+  for (size_t side = 0; side < input.laid_ecef.size(); ++side) {
+    if (!input.laid_ecef[side].empty()) {
+      Lay(input.laid_ecef[side], static_cast<Side>(side), FrameOf(input.node), *page);
+    }
   }
   DeltaValues values = DeltaValuesOf(page->vertices, errors_m);
   page->deltas = std::move(values.deltas_m);
   page->spread_m = values.spread_m;
-  page->min_height_m = static_cast<float>(min_height_m);
-  page->max_height_m = static_cast<float>(max_height_m);
-  const BoundingSphere bounds = BoundsOf(input.node, min_height_m, max_height_m);
+  const BoundingSphere bounds = BoundsOf(input.node, page->min_height_m, page->max_height_m);
   page->center_ecef = bounds.center_ecef;
   page->radius_m = bounds.radius_m;
   return page;

@@ -21,7 +21,10 @@
 #include "runtime/earth/visibility.h"
 #include "runtime/paging/page.h"
 
+#include <array>
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 namespace belvedere {
 
@@ -33,11 +36,21 @@ struct TerrainInput {
   // Finer heights than these lie under the quadnode. Without heights: finer quadnodes exist at all.
   bool finer_exists = false;
   double exaggeration = 1;  // > 0
-  // What finer pages beside a quadnode that has none add along the border that they share, in the blocks that touch it:
-  // there the drawn surface leaves the quadnode's own for the neighbour's posts. Part of delta values, so that it
-  // happens within one cell, and not of error_m, which finer pages could cure.
-  ErrorBlocks border_errors_m{};
+  // ECEF positions for the posts of a border, from its south or west end, in the order of Side; none: those of the
+  // heights. Where data end, what lies beyond is coarser: there the finer surface is laid on the edge of the coarser
+  // one, so that the two are one surface at full resolution, without a step.
+  std::array<std::vector<glm::dvec3>, 4> laid_ecef{};
 };
+
+// The borders of a quadnode.
+enum class Side : uint8_t { kWest, kEast, kSouth, kNorth };
+
+// The posts of one border of the input's quadnode as it would be built, laid_ecef left out.
+std::vector<glm::dvec3> BorderPosts(const TerrainInput& input, Side side);
+
+// The edge of `coarser`, whose border posts those are, at the posts of the quadnode's border on that side: between two
+// posts a straight line. REQUIRES: coarser lies beside the quadnode and is of its level or a coarser one.
+std::vector<glm::dvec3> LaidOn(Quadcode node, Side side, Quadcode coarser, const std::vector<glm::dvec3>& posts);
 
 std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input);
 

@@ -120,6 +120,7 @@ Result<std::vector<NamedLayer>> LayersOf(const std::vector<std::string>& texts, 
 
 std::vector<LayerUse> UsesOf(const std::vector<NamedLayer>& layers) {
   std::vector<LayerUse> uses;
+  uses.reserve(layers.size());
   for (const NamedLayer& layer : layers) uses.push_back(layer.use);
   return uses;
 }

@@ -58,6 +58,7 @@ class FullSurface {
     const int j = std::min(static_cast<int>(y), kCells - 1);
     const double u = x - i, v = y - j;
     const auto post = [&](int east, int north) {
+      if (const auto laid = LaidAt(node, i + east, j + north)) return *laid;
       return ToEcef({box.south_deg + (j + north) * step_deg, box.west_deg + (i + east) * step_deg,
                      page.at(i + east, j + north) * 1e-3 * exaggeration_});
     };
@@ -72,6 +73,39 @@ class FullSurface {
   double HeightAt(const Geodetic& place) { return ToGeodetic(At(place.latitude_deg, place.longitude_deg)).height_m; }
 
  private:
+  // Posts on a border beyond which pages are coarser lie on the straight edge of the coarser page's cells.
+  std::optional<glm::dvec3> LaidAt(Quadcode node, int column, int row) {
+    struct Way {
+      int east, north;
+      bool here;
+    };
+    for (const Way way :
+         {Way{-1, 0, column == 0}, {1, 0, column == kCells}, {0, -1, row == 0}, {0, 1, row == kCells}}) {
+      if (!way.here) continue;
+      const int64_t beside_row = node.row() + way.north;
+      if (beside_row < 0 || beside_row >= int64_t{kTreeRows} << node.level()) continue;
+      Quadcode coarser = Quadcode::FromColumnRow(node.level(), node.column() + way.east, beside_row);
+      if (dataset_.Exists(layer_, coarser)) continue;
+      while (!dataset_.Exists(layer_, coarser)) coarser = coarser.Parent();
+      const ElevationPage& page = PageOf(coarser);
+      const GeoBox box = coarser.Box();
+      const double step_deg = coarser.SizeDegrees() / kCells;
+      const auto edge = [&](int along) {
+        const int at_column = way.east == 0 ? along : way.east < 0 ? kCells : 0;
+        const int at_row = way.north == 0 ? along : way.north < 0 ? kCells : 0;
+        return ToEcef({box.south_deg + at_row * step_deg, box.west_deg + at_column * step_deg,
+                       page.at(at_column, at_row) * 1e-3 * exaggeration_});
+      };
+      const GridPoint from = node.SouthWest(), to = coarser.SouthWest();
+      const uint32_t position = way.east != 0 ? from.y + static_cast<uint32_t>(row) * node.PostSpacing() - to.y
+                                              : from.x + static_cast<uint32_t>(column) * node.PostSpacing() - to.x;
+      const double along = static_cast<double>(position) / coarser.PostSpacing();
+      const int first = std::min(static_cast<int>(along), kCells - 1);
+      return glm::mix(edge(first), edge(first + 1), along - first);
+    }
+    return std::nullopt;
+  }
+
   const ElevationPage& PageOf(Quadcode node) {
     std::shared_ptr<const ElevationPage>& page = pages_[node];
     if (page) return *page;

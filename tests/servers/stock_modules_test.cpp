@@ -1,9 +1,11 @@
 #include "servers/stock_modules.h"
 
+#include "runtime/earth/frame.h"
 #include "servers/terrain_builder.h"
 #include "tests/servers/small_dataset.h"
 
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 namespace belvedere {
 namespace {
@@ -127,22 +129,46 @@ TEST(StockModules, ImageryFinerThanHeightsLiesOnInterpolatedOnes) {
   EXPECT_EQ(terrain->as<TerrainPage>().vertices[5000].z, expected->vertices[5000].z);
 }
 
-// Where the data of a quadnode end and its neighbour's go on, what is finer there must not pull at large triangles.
-TEST(StockModules, FinerPagesBesideAQuadnodeRaiseItsDeltaValuesAlongTheBorder) {
+glm::dvec3 VertexEcef(const TerrainPage& page, int column, int row) {
+  const TerrainVertex& v = page.vertices[static_cast<size_t>(row * kPosts + column)];
+  return FrameOf(page.node).ToEcef({v.x, v.y, v.z});
+}
+
+// Where finer data end, the two surfaces are one along the line.
+TEST(StockModules, ABorderBeyondWhichHeightsAreCoarserLiesOnTheCoarserEdge) {
+  constexpr double kRounding_m = 1.0;  // of coarse quadnodes' vertices
   House house;
-  const Result<PagePin> beside = house.Read("terrain", Quadcode::Root(21));  // east of root 20, which goes on
-  const Result<PagePin> away = house.Read("terrain", Quadcode::Root(23));
-  ASSERT_TRUE(beside.ok() && away.ok());
-  const auto& page = beside->as<TerrainPage>();
-  EXPECT_EQ(page.error_m, 0);
-  const auto delta_m = [&](int column, int row) { return page.deltas[static_cast<size_t>(row * kPosts + column)]; };
-  const auto root = MakeElevation(Quadcode::Root(21), WavyHeight);
-  const auto alone = BuildTerrain({Quadcode::Root(21), root.get(), Quadcode::Root(21), false, 1});
-  for (const int row : {3, 60, 125}) {
-    const auto inner = static_cast<size_t>(row * kPosts + 1);
-    const auto far = static_cast<size_t>(row * kPosts + 101);
-    EXPECT_GE(delta_m(1, row), 50 + 0.9F * alone->deltas[inner]);
-    EXPECT_EQ(delta_m(101, row), alone->deltas[far]);
+  const Quadcode fine = Quadcode::Root(20).Child(0);
+  const Result<PagePin> finer = house.Read("terrain", fine);
+  const Result<PagePin> coarser = house.Read("terrain", Quadcode::Root(19));
+  ASSERT_TRUE(finer.ok() && coarser.ok());
+  const auto& page = finer->as<TerrainPage>();
+  const auto& edge = coarser->as<TerrainPage>();
+  double most_moved_m = 0;
+  const auto heights = MakeElevation(fine, WavyHeight);
+  const auto alone = BuildTerrain({fine, heights.get(), fine, false, 1});
+  for (int row = 0; row < kPosts; ++row) {
+    const glm::dvec3 south = VertexEcef(edge, kCells, row / 2);
+    const glm::dvec3 north = VertexEcef(edge, kCells, (row + 1) / 2);
+    EXPECT_LT(glm::distance(VertexEcef(page, 0, row), 0.5 * (south + north)), kRounding_m) << row;
+    most_moved_m = std::max(most_moved_m, glm::distance(VertexEcef(page, 0, row), VertexEcef(*alone, 0, row)));
+    if (row == 0) continue;  // of the southern border, which is laid as well
+    EXPECT_EQ(VertexEcef(page, 1, row), VertexEcef(*alone, 1, row)) << "no further than the border";
+  }
+  EXPECT_GT(most_moved_m, 10);
+  EXPECT_LE(page.min_height_m, alone->min_height_m);
+}
+
+// Imagery that is finer than the heights has ground as fine beside it, made of coarser heights.
+TEST(StockModules, ABorderBesideGroundAsFineOfCoarserHeightsLiesOnThat) {
+  House house;
+  const Result<PagePin> west = house.Read("terrain", Quadcode::Root(20).Child(1));
+  const Result<PagePin> east = house.Read("terrain", Quadcode::Root(21).Child(0));
+  ASSERT_TRUE(west.ok() && east.ok());
+  for (int row = 1; row < kPosts; ++row) {
+    EXPECT_LT(
+        glm::distance(VertexEcef(west->as<TerrainPage>(), kCells, row), VertexEcef(east->as<TerrainPage>(), 0, row)),
+        1.0);
   }
 }
 
