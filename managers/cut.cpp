@@ -254,6 +254,7 @@ class Selection {
     const auto across = (int64_t{1} << levels) - 1;
     ImageUse use;
     use.slot = slot;
+    use.source = source;
     use.scale = static_cast<float>(scale);
     use.offset_u = static_cast<float>(static_cast<double>(node.column() & across) * scale);
     use.offset_v = static_cast<float>(static_cast<double>(node.row() & across) * scale);

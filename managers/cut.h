@@ -53,6 +53,9 @@ struct CutNode {
   Quadcode node;
   const TerrainPage* page = nullptr;
   std::array<ImageUse, kMaxImageLayers> images{};
+  // What images are blended in over, and until when (image_fade.h).
+  std::array<ImageUse, kFadingLayers> from{};
+  std::array<double, kFadingLayers> fade_until_s{};
   // Screen-space error of e metres at depth z: perspective e * error_scale / z, orthographic e * error_scale.
   double error_scale = 0;
   double nearest_depth_m = 0;  // no point of the quadnode is nearer to the eye along the line of view

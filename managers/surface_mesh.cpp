@@ -343,6 +343,10 @@ class Surface {
       draw.error_px = chosen_[i].error_px + nodes_[i].left_over_px;
       draw.first_index = static_cast<uint32_t>(list_.indices.size());
       draw.images = nodes_[i].images;
+      draw.from = nodes_[i].from;
+      for (size_t layer = 0; layer < kFadingLayers; ++layer) {
+        draw.fade_s[layer] = static_cast<float>(std::max(nodes_[i].fade_until_s[layer] - list_.time_s, 0.0));
+      }
       Joiner(nodes_[i], mesh, first_vertex_[i], lines_, poles_, list_.indices).Append();
       draw.index_count = static_cast<uint32_t>(list_.indices.size()) - draw.first_index;
       list_.terrain_draws.push_back(draw);

@@ -3,6 +3,7 @@
 #include "managers/cut.h"
 #include "managers/eye_jump.h"
 #include "managers/held_bound.h"
+#include "managers/image_fade.h"
 #include "managers/list_pages.h"
 #include "managers/paced_thread.h"
 #include "managers/surface_mesh.h"
@@ -83,8 +84,11 @@ class TerrainManager::Worker {
         kPinnedShareOfBudget * static_cast<double>(paging_.cache.budget_bytes())) {
       limits.max_nodes = std::min(limits.max_nodes, last_nodes_);
     }
-    const Cut cut = SelectCut(held, matrices, paging_.layers, terrain_, limits, pages);
-    surface_.morph.Begin(now_s, jump_.Next(view, now_s, list.statistics.height_above_ground_m, was_settled_));
+    Cut cut = SelectCut(held, matrices, paging_.layers, terrain_, limits, pages);
+    const bool jump = jump_.Next(view, now_s, list.statistics.height_above_ground_m, was_settled_);
+    fade_.Apply(cut.nodes, view.image_layers, now_s, jump, pages);
+    surface_.morph.Begin(now_s, jump);
+    list.time_s = now_s;
     const MeshStatistics mesh =
         BuildSurface(cut.nodes, SightOf(view, matrices.eye_ecef), held.error_px, surface_, list);
     last_nodes_ = static_cast<int>(cut.nodes.size());
@@ -93,7 +97,6 @@ class TerrainManager::Worker {
     list.view = view_id_;
     list.view_number = view.number;
     list.number = ++number_;
-    list.time_s = now_s;
     pages.Finish(view_id_, ListPages::Queues::kTerrain);
 
     DisplayList::Statistics& statistics = list.statistics;
@@ -102,7 +105,7 @@ class TerrainManager::Worker {
     statistics.achieved_error_px = mesh.achieved_error_px + cut.left_over_error_px;
     statistics.pages_waiting = static_cast<uint32_t>(pages.pages_waiting());
     statistics.behind = cut.behind || pages.at_limit();
-    statistics.rises_until_s = mesh.rises_until_s;
+    statistics.rises_until_s = std::max(mesh.rises_until_s, fade_.until_s());
     statistics.settled = !cut.waiting && pages.pages_waiting() == 0 && !cut.nodes.empty();
     was_settled_ = statistics.settled;
   }
@@ -118,6 +121,7 @@ class TerrainManager::Worker {
   int last_nodes_ = 0;
   bool was_settled_ = false;
   SurfaceState surface_;
+  ImageFade fade_;
   EyeJump jump_;
   HeldBound bound_;
   double last_list_s_ = 0;

@@ -225,7 +225,7 @@ Renderer::Drawn Renderer::DrawView(View& view, const ViewParameters& parameters,
   if (view.has_terrain) {
     WalkList(terrain, view.matrices, view.visible);
     if (parameters.wireframe) glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
-    view.terrain.Draw(terrain, view.visible.terrain, view.matrices, parameters, sun_ecef);
+    view.terrain.Draw(terrain, view.visible.terrain, view.matrices, parameters, since_list_s, sun_ecef);
     glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
     if (parameters.volumes) volumes_.Draw(terrain, view.matrices);
     drawn = {view.visible.triangles, static_cast<uint32_t>(view.visible.terrain.size())};

@@ -23,11 +23,12 @@ struct DrawRow {
   uint32_t frame = 0;
   float per_grid_unit = 0;
   float per_rise_s = 0;
-  std::array<float, 2> unused{};
+  std::array<float, 2> fade_s{};
   std::array<uint32_t, 4> tints{};
+  std::array<glm::vec4, kFadingLayers> from{};
   std::array<glm::vec4, kMaxImageLayers> image{};
 };
-static_assert(sizeof(DrawRow) == 144);
+static_assert(sizeof(DrawRow) == 176);
 static_assert(sizeof(FrameRow) == 128);
 static_assert(sizeof(ListVertex) == 24);
 
@@ -58,10 +59,11 @@ GLuint TerrainPrograms::For(const Layers& layers) {
                              layers.images[i].role, layers.images[i].single ? 1 : 0, layers.images[i].adjusted ? 1 : 0);
     }
     const auto multipliers = count_of(LayerRole::kMultiply);
-    defines +=
-        fmt::format("#define MULTIPLIERS {}\n#define SLOPES {}\n#define NIGHT {}\n#define WATER {}\n#define TINT {}\n",
-                    multipliers, multipliers == 0 ? 1 : 0, count_of(LayerRole::kNight) > 0 ? 1 : 0,
-                    count_of(LayerRole::kWater) > 0 ? 1 : 0, layers.tinted ? 1 : 0);
+    defines += fmt::format(
+        "#define MULTIPLIERS {}\n#define SLOPES {}\n#define NIGHT {}\n#define WATER {}\n#define TINT {}\n#define FADE "
+        "{}\n",
+        multipliers, multipliers == 0 ? 1 : 0, count_of(LayerRole::kNight) > 0 ? 1 : 0,
+        count_of(LayerRole::kWater) > 0 ? 1 : 0, layers.tinted ? 1 : 0, layers.fading ? 1 : 0);
     const std::string common = std::string(shaders::kView) + std::string(shaders::kAtmosphere);
     program = MakeProgram("terrain", common + std::string(shaders::kTerrainVert),
                           common + std::string(shaders::kTerrainFrag), defines);
@@ -99,20 +101,22 @@ TerrainPass::TerrainPass(const GpuPages& pages, TerrainPrograms& programs)
   glVertexArrayElementBuffer(array, indices_.get());
 }
 
-TerrainPass::Layers TerrainPass::LayersOf(uint32_t draw, std::span<const ImageUse> images, const ViewParameters& view,
-                                          const glm::dvec3& sun_ecef) const {
+TerrainPass::Layers TerrainPass::LayersOf(uint32_t number, const TerrainDraw& draw, const ViewParameters& view,
+                                          double since_list_s, const glm::dvec3& sun_ecef) const {
   Layers layers;
+  layers.fading = std::any_of(draw.fade_s.begin(), draw.fade_s.end(),
+                              [&](float fade_s) { return static_cast<double>(fade_s) > since_list_s; });
   layers.tinted = view.tint != GroundTint::kNone;
   const std::span<const LayerUse> uses = view.image_layers;
-  const double sun_sine = glm::dot(middles_[draw].up_ecef, sun_ecef);
-  const double reach = middles_[draw].reach;
-  for (size_t i = 0; i < std::min(images.size(), uses.size()); ++i) {
+  const double sun_sine = glm::dot(middles_[number].up_ecef, sun_ecef);
+  const double reach = middles_[number].reach;
+  for (size_t i = 0; i < std::min(draw.images.size(), uses.size()); ++i) {
     const LayerUse& use = uses[i];
-    if (images[i].slot < 0 || !use.shown()) continue;
+    if (draw.images[i].slot < 0 || !use.shown()) continue;
     // Neither costs anything where it cannot be seen.
     if (use.role == LayerRole::kNight && sun_sine - reach > kLightsOff) continue;
     if (use.role == LayerRole::kWater && sun_sine + reach < 0) continue;
-    layers.images[i] = {ModeOf(use.role), !pages_.IsColour(images[i].slot),
+    layers.images[i] = {ModeOf(use.role), !pages_.IsColour(draw.images[i].slot),
                         use.opacity != 1 || use.gamma != 1 || use.multiplier != 1};
   }
   return layers;
@@ -122,6 +126,11 @@ void TerrainPass::SetList(const DisplayList& list) {
   Send(vertices_, list.vertices);
   Send(indices_, list.indices);
   SetDraws(list);
+}
+
+glm::vec4 TerrainPass::RowOf(const ImageUse& use) const {
+  if (use.slot < 0) return {0.0F, 0.0F, 0.0F, 0.0F};
+  return {use.offset_u, use.offset_v, use.scale, static_cast<float>(pages_.ArrayLayer(use.slot))};
 }
 
 void TerrainPass::SetDraws(const DisplayList& list) {
@@ -140,9 +149,11 @@ void TerrainPass::SetDraws(const DisplayList& list) {
     row.per_rise_s = draw.rise_s > 0 ? 1.0F / draw.rise_s : 0.0F;
     row.tints = TintsOf(draw, list);
     for (size_t i = 0; i < row.image.size(); ++i) {
-      const ImageUse& use = draw.images[i];
-      if (use.slot < 0) continue;
-      row.image[i] = {use.offset_u, use.offset_v, use.scale, static_cast<float>(pages_.ArrayLayer(use.slot))};
+      row.image[i] = RowOf(draw.images[i]);
+    }
+    for (size_t i = 0; i < kFadingLayers; ++i) {
+      row.from[i] = RowOf(draw.from[i]);
+      row.fade_s[i] = draw.fade_s[i];
     }
     rows.push_back(row);
     const GeoBox box = draw.node.Box();
@@ -167,7 +178,7 @@ void TerrainPass::SetMatrices(const DisplayList& list, const ViewMatrices& matri
 }
 
 void TerrainPass::Draw(const DisplayList& list, std::span<const uint32_t> draws, const ViewMatrices& matrices,
-                       const ViewParameters& view, const glm::dvec3& sun_ecef) {
+                       const ViewParameters& view, double since_list_s, const glm::dvec3& sun_ecef) {
   if (draws.empty()) return;
   SetMatrices(list, matrices);
   glBindVertexArray(vertex_array_.get());
@@ -176,7 +187,7 @@ void TerrainPass::Draw(const DisplayList& list, std::span<const uint32_t> draws,
   pages_.BindImages();
   layers_of_draw_.clear();
   for (const uint32_t number : draws) {
-    layers_of_draw_.push_back(LayersOf(number, list.terrain_draws[number].images, view, sun_ecef));
+    layers_of_draw_.push_back(LayersOf(number, list.terrain_draws[number], view, since_list_s, sun_ecef));
   }
   layers_met_ = layers_of_draw_;
   std::sort(layers_met_.begin(), layers_met_.end());

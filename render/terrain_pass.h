@@ -33,6 +33,7 @@ class TerrainPrograms {
   struct Layers {
     std::array<LayerMode, kMaxImageLayers> images{};
     bool tinted = false;
+    bool fading = false;  // the lowest images are blended in
     auto operator<=>(const Layers&) const = default;
   };
   GLuint For(const Layers& layers);
@@ -49,12 +50,13 @@ class TerrainPass {
   void SetList(const DisplayList& list);
   // draws: indices of the list's terrain_draws. Layers and tint are those that the view has now.
   void Draw(const DisplayList& list, std::span<const uint32_t> draws, const ViewMatrices& matrices,
-            const ViewParameters& view, const glm::dvec3& sun_ecef);
+            const ViewParameters& view, double since_list_s, const glm::dvec3& sun_ecef);
 
  private:
   using Layers = TerrainPrograms::Layers;
-  Layers LayersOf(uint32_t draw, std::span<const ImageUse> images, const ViewParameters& view,
+  Layers LayersOf(uint32_t number, const TerrainDraw& draw, const ViewParameters& view, double since_list_s,
                   const glm::dvec3& sun_ecef) const;
+  glm::vec4 RowOf(const ImageUse& use) const;
   void SetDraws(const DisplayList& list);
   void SetMatrices(const DisplayList& list, const ViewMatrices& matrices);
 

@@ -15,6 +15,10 @@ flat in vec3 more_pages;
 #if LAYER4 != 0 || LAYER5 != 0
 in vec4 uv45;
 #endif
+#if FADE
+in vec4 from01;
+flat in vec4 from_pages;
+#endif
 #if NIGHT
 in float dark;                                 // share of a light on the ground that reaches the eye, by day none
 #endif
@@ -35,10 +39,12 @@ vec3 ground = kBareGround;
 vec3 lights = vec3(0.0);
 float water = 0.0;
 
-// All but uv, page and how are constants where it is called.
-void Lay(int role, int single, int adjusted, vec2 uv, float page, vec4 how) {
-  vec4 texel = single != 0 ? vec4(texture(overlay_pages, vec3(uv, page)).rrr, 1.0)
-                           : texture(colour_pages, vec3(uv, page));
+vec4 Texel(int single, vec2 uv, float page) {
+  return single != 0 ? vec4(texture(overlay_pages, vec3(uv, page)).rrr, 1.0) : texture(colour_pages, vec3(uv, page));
+}
+
+// role, single and adjusted are constants where it is called.
+void Lay(int role, int single, int adjusted, vec4 texel, vec4 how) {
   if (role == kGrey) texel.rgb = vec3(dot(texel.rgb, kLuminance));
   float opacity = 1.0;
   if (adjusted != 0) {
@@ -76,22 +82,32 @@ float Glint() {
 
 void main() {
 #if LAYER0 != 0
-  Lay(LAYER0, SINGLE0, ADJUST0, uv01.xy, pages.x, layers[0]);
+#if FADE
+  Lay(LAYER0, SINGLE0, ADJUST0,
+      mix(Texel(SINGLE0, uv01.xy, pages.x), Texel(SINGLE0, from01.xy, from_pages.x), from_pages.z), layers[0]);
+#else
+  Lay(LAYER0, SINGLE0, ADJUST0, Texel(SINGLE0, uv01.xy, pages.x), layers[0]);
+#endif
 #endif
 #if LAYER1 != 0
-  Lay(LAYER1, SINGLE1, ADJUST1, uv01.zw, pages.y, layers[1]);
+#if FADE
+  Lay(LAYER1, SINGLE1, ADJUST1,
+      mix(Texel(SINGLE1, uv01.zw, pages.y), Texel(SINGLE1, from01.zw, from_pages.y), from_pages.w), layers[1]);
+#else
+  Lay(LAYER1, SINGLE1, ADJUST1, Texel(SINGLE1, uv01.zw, pages.y), layers[1]);
+#endif
 #endif
 #if LAYER2 != 0
-  Lay(LAYER2, SINGLE2, ADJUST2, uv23.xy, pages.z, layers[2]);
+  Lay(LAYER2, SINGLE2, ADJUST2, Texel(SINGLE2, uv23.xy, pages.z), layers[2]);
 #endif
 #if LAYER3 != 0
-  Lay(LAYER3, SINGLE3, ADJUST3, uv23.zw, more_pages.x, layers[3]);
+  Lay(LAYER3, SINGLE3, ADJUST3, Texel(SINGLE3, uv23.zw, more_pages.x), layers[3]);
 #endif
 #if LAYER4 != 0
-  Lay(LAYER4, SINGLE4, ADJUST4, uv45.xy, more_pages.y, layers[4]);
+  Lay(LAYER4, SINGLE4, ADJUST4, Texel(SINGLE4, uv45.xy, more_pages.y), layers[4]);
 #endif
 #if LAYER5 != 0
-  Lay(LAYER5, SINGLE5, ADJUST5, uv45.zw, more_pages.z, layers[5]);
+  Lay(LAYER5, SINGLE5, ADJUST5, Texel(SINGLE5, uv45.zw, more_pages.z), layers[5]);
 #endif
   colour = ground * shade.x + shade.yzw;
 #if NIGHT

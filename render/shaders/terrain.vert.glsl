@@ -6,6 +6,7 @@ layout(location = 3) in float rise_m;          // over its place when the list w
 layout(location = 4) in uint draw_number;      // one a draw (base instance)
 
 const uint kPosts = 129u;
+const float kFade_s = 0.3;                     // as in managers/image_fade.h
 const uint kNorthPole = 0x80000000u;
 
 struct FrameRow {
@@ -19,8 +20,9 @@ struct DrawRow {
   uint frame;
   float per_grid_unit;                         // 1 / side of the quadnode
   float per_rise_s;
-  vec2 unused;
+  vec2 fade_s;                                 // for how long its lowest images are still blended in
   uvec4 tints;                                 // by error, level, frame and image
+  vec4 from[2];                                // what those are blended in over; as image
   vec4 image[6];                               // offset u, offset v, scale, array layer
 };
 layout(std430, binding = 0) readonly buffer Frames { FrameRow frames[]; };
@@ -42,6 +44,10 @@ out vec4 uv45;
 #endif
 #if NIGHT
 out float dark;
+#endif
+#if FADE
+out vec4 from01;
+flat out vec4 from_pages;                      // array layers, and how much of them is left
 #endif
 #if TINT
 flat out vec4 tint;
@@ -121,6 +127,11 @@ void main() {
 #if WATER
   to_eye = eyewards;
   up_sun = vec4(up, smoothstep(0.0, 0.08, sun_sine) * (1.0 - veil.g));
+#endif
+#if FADE
+  from01 = vec4(ImageCoordinate(draws[draw_number].from[0], local), ImageCoordinate(draws[draw_number].from[1], local));
+  from_pages = vec4(draws[draw_number].from[0].w, draws[draw_number].from[1].w,
+                    clamp((draws[draw_number].fade_s - moment.x) / kFade_s, 0.0, 1.0));
 #endif
 #if TINT
   tint = unpackUnorm4x8(draws[draw_number].tints[int(moment.y)]);

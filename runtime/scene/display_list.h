@@ -39,7 +39,8 @@
 
 namespace belvedere {
 
-inline constexpr int kMaxImageLayers = 6;  // drawn over each other in one pass
+inline constexpr int kMaxImageLayers = 6;   // drawn over each other in one pass
+inline constexpr size_t kFadingLayers = 2;  // the lowest ones, whose images are blended in
 
 struct ListRecord {
   enum class Kind : uint8_t { kCullBegin, kCullEnd, kDrawTerrain, kDrawInstances };
@@ -55,6 +56,7 @@ struct ImageUse {
   int32_t slot = -1;  // -1: no image, draw as neutral
   float offset_u = 0, offset_v = 0;
   float scale = 1;
+  Quadcode source;  // of the page
 };
 
 struct ListVertex {
@@ -76,7 +78,10 @@ struct TerrainDraw {
   float rise_s = 0;    // for how long its vertices rise or sink; 0: they do not
   float error_px = 0;  // largest error that it leaves on the screen
   uint32_t first_index = 0;
-  uint32_t index_count = 0;                        // 3 a triangle
+  uint32_t index_count = 0;  // 3 a triangle
+  // What the lowest images are blended in over, and for how long still at time_s; 0: they are there.
+  std::array<ImageUse, kFadingLayers> from{};
+  std::array<float, kFadingLayers> fade_s{};
   std::array<ImageUse, kMaxImageLayers> images{};  // as ViewParameters::image_layers has them
 };
 
@@ -129,7 +134,7 @@ struct DisplayList {
     uint32_t pages_waiting = 0;    // pages wished for and not yet drawn
     bool behind = false;           // some visible quadnode is coarser than the bound asks
     bool settled = false;          // nothing more will come for these view parameters
-    double rises_until_s = 0;      // clock time from which on every vertex is in its place
+    double rises_until_s = 0;      // clock time from which on all vertices and images are in their places
     double height_above_ground_m = 0;  // of the eye, over the finest resident surface under it
     double build_ms = 0;
   } statistics;

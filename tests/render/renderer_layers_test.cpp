@@ -107,6 +107,35 @@ TEST_F(Layers, GreyHasNoHue) {
   EXPECT_NEAR(grey[1], grey[2], 8);
 }
 
+TEST_F(Layers, AnImageIsBlendedInOverTheOneBefore) {
+  Load(kGround, std::nullopt);
+  const Rgba after = Middle();
+  // The same list again, blended in over a darker image.
+  const Quadcode elsewhere = Quadcode::Containing(50, 50, 10);
+  std::vector<PagePin> pins;
+  pins.push_back(scene_.AddColour(elsewhere, {20, 20, 20, 255}));
+  stage_->Upload(std::move(pins));
+  DisplayList& list = stage_->channel->terrain_lists.back();
+  list.Clear();
+  AddSurface(list, scene_, nodes_, 32);
+  const int darker = PinInto(list, scene_.Find(scene_.colour_type(), elsewhere));
+  for (TerrainDraw& draw : list.terrain_draws) {
+    draw.from[0] = draw.images[0];
+    draw.from[0].slot = darker;
+    draw.fade_s[0] = 0.3F;
+  }
+  list.statistics.height_above_ground_m = 5000;
+  list.statistics.rises_until_s = 0.3;
+  stage_->channel->terrain_lists.Publish();
+  const Rgba before = Middle();
+  clock_.Advance(0.15);
+  const Rgba half = Middle();
+  clock_.Advance(0.15);
+  ExpectNear(Middle(), after, 0);
+  for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(half[i], (before[i] + after[i]) / 2, 4);
+  EXPECT_LT(before[2], after[2] - 60);
+}
+
 TEST_F(Layers, ATintShowsHowTheGroundIsDrawn) {
   Load(kGround, std::nullopt);
   const Rgba plain = Middle();
