@@ -96,6 +96,7 @@ void AddTour(CLI::App& program, TourOptions& options, Texts& texts) {
   command->add_option("--time", texts.time, "time of the sun (default: equinox noon at the path's end)")
       ->check(TimeText());
   command->add_option("--report", options.report, "report file (JSON)")->required();
+  command->add_option("--frame-csv", options.frame_csv, "a line a frame (CSV)");
   command->add_option("--trace", options.trace, "write a trace of what each thread did");
 }
 

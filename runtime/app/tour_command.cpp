@@ -326,6 +326,9 @@ int FlyTour(const TourOptions& options) {
   tour.Fly();
   const TourReport report = tour.Report();
   if (Status status = WriteText(options.report, ToJson(report)); !status.ok()) return CouldNot(status);
+  if (!options.frame_csv.empty()) {
+    if (Status status = WriteText(options.frame_csv, ToCsv(report.samples)); !status.ok()) return CouldNot(status);
+  }
   if (!options.trace.empty()) {
     if (Status status = Trace::Write(options.trace); !status.ok()) return CouldNot(status);
   }

@@ -155,6 +155,18 @@ std::string ToJson(const TourReport& report) {
   return json.dump(2) + "\n";
 }
 
+std::string ToCsv(const std::vector<FrameSample>& samples) {
+  std::string csv =
+      "frame,view,time_s,frame_ms,draw_ms,triangles,nodes,held_error_px,achieved_error_px,behind,upload_ms,upload_"
+      "bytes\n";
+  for (const FrameSample& s : samples) {
+    csv += fmt::format("{},{},{:.4f},{:.3f},{:.3f},{},{},{:.3f},{:.3f},{},{:.3f},{}\n", s.frame, s.view, s.time_s,
+                       s.frame_ms, s.draw_ms, s.triangles, s.nodes, s.held_error_px, s.achieved_error_px,
+                       s.behind ? 1 : 0, s.upload_ms, s.upload_bytes);
+  }
+  return csv;
+}
+
 RequestQueue::Statistics SumOf(const std::vector<std::unique_ptr<RequestQueue>>& queues) {
   RequestQueue::Statistics sum;
   for (const auto& queue : queues) {

@@ -30,6 +30,8 @@ struct TourReport {
 };
 
 std::string ToJson(const TourReport& report);
+// A line a view and frame, after one of names.
+std::string ToCsv(const std::vector<FrameSample>& samples);
 
 // Sums of all queues; the wait is that of the queue with the longest.
 RequestQueue::Statistics SumOf(const std::vector<std::unique_ptr<RequestQueue>>& queues);

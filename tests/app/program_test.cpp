@@ -7,6 +7,7 @@
 
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -140,10 +141,12 @@ TEST(ProgramTest, SnapshotNamesTheNearestLayer) {
 TEST(ProgramTest, TourReportsEveryPromisedField) {
   const MadeDataset dataset("tour");
   const std::string path = TempPath("path.csv"), report = TempPath("r.json");
+  const std::string csv = TempPath("frames.csv");
   std::ofstream(path) << "t_s,lat_deg,lon_deg,height_m,heading_deg,pitch_deg,roll_deg,vfov_deg\n"
                          "0,10,10,2000000,0,-80,0,60\n1,11,10,1000000,0,-70,0,60\n2,12,10,500000,0,-60,0,60\n";
   const Outcome outcome = RunProgram("tour " + dataset.path() + " " + path +
-                                     " --size 160x120 --views 2 --traffic 10 --redraw 1 --headless --report " + report);
+                                     " --size 160x120 --views 2 --traffic 10 --redraw 1 --headless --report " + report +
+                                     " --frame-csv " + csv);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.errors;
   const nlohmann::json json = nlohmann::json::parse(TextOf(report));
   for (const char* field :
@@ -164,6 +167,10 @@ TEST(ProgramTest, TourReportsEveryPromisedField) {
   EXPECT_GT(json["frames"].get<int>(), 1);
   EXPECT_GT(json["traffic"]["received"].get<int>(), 0);
   EXPECT_TRUE(json.contains("paging_ratio"));
+  const std::string frames = TextOf(csv);
+  EXPECT_EQ(frames.find("frame,view,time_s,frame_ms,"), 0U);
+  EXPECT_EQ(std::count(frames.begin(), frames.end(), '\n'), 1 + 2 * json["frames"].get<int>()) << "two views";
+  std::remove(csv.c_str());
   std::remove(path.c_str());
   std::remove(report.c_str());
 }
