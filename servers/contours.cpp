@@ -51,7 +51,7 @@ float Fade(float value, float none, float all) {
 // How much of a texel the line nearest to it covers. gradient: metres a texel.
 float Cover(float height_m, float gradient, float interval_m, float half_width) {
   const float off_m = std::abs(height_m - interval_m * std::nearbyint(height_m / interval_m));
-  if (off_m > gradient * (half_width + 0.5F)) return 0;
+  if (off_m >= gradient * (half_width + 0.5F)) return 0;  // level ground too, also at a line's height
   const float cover = std::min(half_width + 0.5F - off_m / gradient, 1.0F);
   return cover * Fade(gradient / interval_m, kCrowded, kClear);
 }
@@ -113,7 +113,7 @@ class Labels {
     const TexelHeight& at = Ground(column, row);
     const float gradient = Gradient(at);
     const float line_m = heavy_m_ * std::nearbyint(at.height_m / heavy_m_);
-    if (line_m == 0 || std::abs(at.height_m - line_m) > gradient * kHeavy || gradient > kMostLabelled * heavy_m_) {
+    if (line_m == 0 || std::abs(at.height_m - line_m) >= gradient * kHeavy || gradient > kMostLabelled * heavy_m_) {
       return std::nullopt;
     }
     const std::string text = fmt::format("{:.8g}", line_m);

@@ -81,6 +81,16 @@ TEST(Contours, FlatGroundHasNoneAndCrowdedOnesFade) {
   EXPECT_GT(most(*DrawContours(*Ramp(20 * interval_m, 2), kNode, nullptr, NoText())), 200);  // the heavy ones are left
 }
 
+TEST(Contours, LevelGroundAtALinesHeightHasNeitherLineNorText) {
+  const double height_m = 20 * ContourInterval(kNode.level());
+  const PageText text;
+  ASSERT_TRUE(text.font().ok()) << text.font().message();
+  const auto page = DrawContours(*MakeElevation(kNode, [=](GridPoint) { return height_m; }), kNode, nullptr, text);
+  for (int row = 0; row < kImageSide; ++row) {
+    for (int column = 0; column < kImageSide; ++column) ASSERT_EQ(AlphaAt(*page, column, row), 0);
+  }
+}
+
 TEST(Contours, GoOnOverBorders) {
   for (const int level : {4, 9}) {
     const Quadcode node = Quadcode::Containing(44, 9.99, level);
