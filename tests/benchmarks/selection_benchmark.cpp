@@ -1,12 +1,15 @@
 // What terrain selection costs and yields: quadnodes, triangles and milliseconds of a display list at poses along a
-// camera path, with every page in memory and taken to be on the GPU. No rendering, no threads.
+// camera path, with every page in memory and taken to be on the GPU, for an eye that stands still and for one that goes
+// on along the path. No rendering, no threads.
 //
 // Usage: selection_benchmark DATASET PATH.csv [ERROR_PX]
-// PATH.csv is a camera path as `belvedere tour` takes it; every tenth row is a pose.
+// PATH.csv is a camera path as `belvedere tour` takes it; every ten seconds of it are a pose.
 
 #include "managers/cut.h"
 #include "managers/list_pages.h"
 #include "managers/surface_mesh.h"
+#include "runtime/app/camera_path.h"
+#include "runtime/app/layer_text.h"
 #include "runtime/earth/ellipsoid.h"
 #include "runtime/paging/terrain_height.h"
 #include "servers/stock_modules.h"
@@ -14,17 +17,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
-#include <fstream>
-#include <sstream>
 #include <unordered_set>
 
 namespace belvedere {
 namespace {
 
-constexpr int kRowsPerPose = 10;
+constexpr double kSecondsPerPose = 10;
 constexpr int kMostRounds = 60;
-constexpr int kTimedBuilds = 20;
+constexpr int kTimedBuilds = 30;
+constexpr double kSecondsPerList = 1.0 / 30;
 
 struct Scene {
   std::unique_ptr<Dataset> dataset;
@@ -63,9 +66,10 @@ struct Built {
   MeshStatistics mesh;
 };
 
-Built Build(Scene& scene, const ViewParameters& view, DisplayList& list) {
+Built Build(Scene& scene, const ViewParameters& view, double now_s, DisplayList& list) {
   const Clock& clock = Clock::System();
   list.Clear();
+  list.time_s = now_s;
   const Geodetic eye = ToGeodetic(view.eye_ecef);
   const auto ground = GroundUnder(*scene.paging, scene.terrain, eye.latitude_deg, eye.longitude_deg);
   const ViewMatrices matrices = MatricesOf(view, 0, std::max(0.0, eye.height_m - (ground ? ground->height_m : 0)));
@@ -74,6 +78,7 @@ Built Build(Scene& scene, const ViewParameters& view, DisplayList& list) {
   const double start = clock.NowSeconds();
   built.cut = SelectCut(view, matrices, scene.paging->layers, scene.terrain, {}, pages);
   const double middle = clock.NowSeconds();
+  scene.surface.morph.Begin(now_s, false);
   built.mesh = BuildSurface(built.cut.nodes, SightOf(view, matrices.eye_ecef), view.error_px, scene.surface, list);
   built.cut_ms = (middle - start) * 1e3;
   built.mesh_ms = (clock.NowSeconds() - middle) * 1e3;
@@ -81,23 +86,50 @@ Built Build(Scene& scene, const ViewParameters& view, DisplayList& list) {
   return built;
 }
 
-void Report(Scene& scene, const ViewParameters& view, double time_s) {
+void Look(const CameraPose& pose, ViewParameters& view) {
+  view.eye_ecef = pose.eye_ecef();
+  view.ecef_from_camera = pose.ecef_from_camera();
+  view.vertical_fov = Radians::FromDegrees(pose.vfov_deg);
+}
+
+double Median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
+  return values[values.size() / 2];
+}
+
+struct Timed {
+  Built last;
+  double cut_ms = 0, mesh_ms = 0;
+};
+
+// seconds_per_list: by which the eye goes on along the path.
+Timed TimeLists(Scene& scene, const CameraPath& path, double start_s, double seconds_per_list, ViewParameters& view,
+                DisplayList& list) {
+  std::vector<double> cut_ms, mesh_ms;
+  Timed timed;
+  for (int i = 0; i < kTimedBuilds; ++i) {
+    Look(path.PoseAt(start_s + i * seconds_per_list), view);
+    timed.last = Build(scene, view, start_s + i * kSecondsPerList, list);
+    while (Serve(scene, list)) {
+    }
+    cut_ms.push_back(timed.last.cut_ms);
+    mesh_ms.push_back(timed.last.mesh_ms);
+  }
+  timed.cut_ms = Median(cut_ms);
+  timed.mesh_ms = Median(mesh_ms);
+  return timed;
+}
+
+// Adds to the sums of milliseconds for a list, still and in motion.
+void Report(Scene& scene, const CameraPath& path, double time_s, ViewParameters& view, std::array<double, 2>& sums) {
   DisplayList list;
   int rounds = 0;
+  Look(path.PoseAt(time_s), view);
   do {
-    Build(scene, view, list);
+    Build(scene, view, time_s - 10, list);
   } while (Serve(scene, list) && ++rounds < kMostRounds);
-  std::vector<double> cut_ms, mesh_ms;
-  Built built;
-  for (int i = 0; i < kTimedBuilds; ++i) {
-    built = Build(scene, view, list);
-    cut_ms.push_back(built.cut_ms);
-    mesh_ms.push_back(built.mesh_ms);
-  }
-  const auto median = [](std::vector<double>& values) {
-    std::nth_element(values.begin(), values.begin() + kTimedBuilds / 2, values.end());
-    return values[kTimedBuilds / 2];
-  };
+  const Timed still = TimeLists(scene, path, time_s, 0, view, list);
+  const Built& built = still.last;
   int deepest = 0;
   uint32_t visible = 0;
   uint32_t visible_triangles = 0;
@@ -107,15 +139,26 @@ void Report(Scene& scene, const ViewParameters& view, double time_s) {
     visible += node.visible ? 1 : 0;
     visible_triangles += node.visible ? list.terrain_draws[i].index_count / 3 : 0;
   }
+  const double height_m = ToGeodetic(view.eye_ecef).height_m;
+  const uint64_t chosen = scene.surface.kept.chosen();
+  const Timed moving = TimeLists(scene, path, time_s, kSecondsPerList, view, list);
   fmt::print(
-      "{:6.1f} s {:9.0f} m: rounds {:2}, nodes {:3} ({:3} seen), deepest {:2}, triangles {:6} ({:6} seen), "
-      "cut {:.2f} ms, mesh {:.2f} ms, error {:.2f} px{}\n",
-      time_s, ToGeodetic(view.eye_ecef).height_m, rounds, built.cut.nodes.size(), visible, deepest,
-      built.mesh.triangles, visible_triangles, median(cut_ms), median(mesh_ms), built.mesh.achieved_error_px,
-      built.cut.behind ? ", behind" : "");
+      "{:6.1f} s {:9.0f} m: rounds {:2}, nodes {:3} ({:3} seen), deepest {:2}, triangles {:6} ({:6} seen), error "
+      "{:.2f} "
+      "px{}; cut {:.2f} ms, mesh {:.2f} ms; in motion cut {:.2f} ms, mesh {:.2f} ms, {:.0f} quadnodes chosen a list\n",
+      time_s, height_m, rounds, built.cut.nodes.size(), visible, deepest, built.mesh.triangles, visible_triangles,
+      built.mesh.achieved_error_px, built.cut.behind ? ", behind" : "", still.cut_ms, still.mesh_ms, moving.cut_ms,
+      moving.mesh_ms, static_cast<double>(scene.surface.kept.chosen() - chosen) / kTimedBuilds);
+  sums[0] += still.cut_ms + still.mesh_ms;
+  sums[1] += moving.cut_ms + moving.mesh_ms;
 }
 
 int Run(const char* dataset_path, const char* path_file, double error_px) {
+  const Result<CameraPath> path = CameraPath::Load(path_file);
+  if (!path.ok()) {
+    fmt::print(stderr, "{}\n", path.message());
+    return 1;
+  }
   Scene scene;
   Result<std::unique_ptr<Dataset>> dataset = Dataset::Open(dataset_path);
   if (!dataset.ok()) {
@@ -133,25 +176,12 @@ int Run(const char* dataset_path, const char* path_file, double error_px) {
   ViewParameters view;
   view.number = 1;
   view.error_px = error_px;
-  for (const Layer& layer : scene.paging->layers.layers()) {
-    if (layer.kind == PageKind::kColour || layer.kind == PageKind::kOverlay)
-      view.image_layers.push_back({layer.type, layer.role});
+  view.image_layers = UsesOf(*LayersOf({}, scene.paging->layers));
+  std::array<double, 2> sums{};
+  for (double time_s = 0; time_s < path->length_s(); time_s += kSecondsPerPose) {
+    Report(scene, *path, time_s, view, sums);
   }
-  std::ifstream file(path_file);
-  std::string line;
-  std::getline(file, line);  // names
-  for (int row = 0; std::getline(file, line); ++row) {
-    if (row % kRowsPerPose != 0) continue;
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream numbers(line);
-    double t = 0, latitude = 0, longitude = 0, height = 0, heading = 0, pitch = 0, roll = 0, vfov = 0;
-    numbers >> t >> latitude >> longitude >> height >> heading >> pitch >> roll >> vfov;
-    view.eye_ecef = ToEcef({latitude, longitude, height});
-    view.ecef_from_camera = CameraAxes(latitude, longitude, Radians::FromDegrees(heading), Radians::FromDegrees(pitch),
-                                       Radians::FromDegrees(roll));
-    view.vertical_fov = Radians::FromDegrees(vfov);
-    Report(scene, view, t);
-  }
+  fmt::print("sum of medians: {:.2f} ms still, {:.2f} ms in motion\n", sums[0], sums[1]);
   scene.on_gpu.clear();
   return 0;
 }
