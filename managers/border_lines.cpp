@@ -36,19 +36,19 @@ uint64_t BorderLines::PositionOf(Quadcode node, Border border, int post) {
   return start + static_cast<uint64_t>(post) * node.PostSpacing();
 }
 
-void BorderLines::Add(Quadcode node, Border border, int post, uint32_t vertex, uint32_t rank) {
+void BorderLines::Add(Quadcode node, Border border, int post, uint32_t corner, uint32_t rank) {
   const uint64_t line = LineOf(node, border);
   const uint64_t position = PositionOf(node, border, post);
-  vertices_.push_back({line, position, vertex, rank});
+  vertices_.push_back({line, position, corner, rank});
   if (IsMeridian(border)) return;
   // 180 W and 180 E are one place at both ends of every parallel.
-  if (position == 0) vertices_.push_back({line, kAroundTheEarth, vertex, rank});
-  if (position == kAroundTheEarth) vertices_.push_back({line, 0, vertex, rank});
+  if (position == 0) vertices_.push_back({line, kAroundTheEarth, corner, rank});
+  if (position == kAroundTheEarth) vertices_.push_back({line, 0, corner, rank});
 }
 
 void BorderLines::Seal() {
   std::sort(vertices_.begin(), vertices_.end(), [](const BorderVertex& a, const BorderVertex& b) {
-    return std::tie(a.line, a.position, a.rank, a.vertex) < std::tie(b.line, b.position, b.rank, b.vertex);
+    return std::tie(a.line, a.position, a.rank, a.corner) < std::tie(b.line, b.position, b.rank, b.corner);
   });
   const auto last = std::unique(vertices_.begin(), vertices_.end(), [](const BorderVertex& a, const BorderVertex& b) {
     return a.line == b.line && a.position == b.position;

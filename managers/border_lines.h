@@ -5,7 +5,9 @@
 // their corner agree on it along the meridian and along the parallel, since the finest of them always has it in a
 // corner.
 //
-// Units: positions in grid units (quadcode.h); vertices as numbered in the list (display_list.h).
+// A corner names a vertex by its quadnode: (number of the quadnode in the cut) << 15 | number among the quadnode's own.
+//
+// Units: positions in grid units (quadcode.h).
 // Threads: one.
 #pragma once
 
@@ -19,10 +21,21 @@ namespace belvedere {
 
 enum class Border : uint8_t { kWest, kEast, kSouth, kNorth };
 
+inline constexpr uint32_t kOwnVertexBits = 15;
+constexpr uint32_t CornerOf(uint32_t node, uint32_t own_vertex) {
+  return node << kOwnVertexBits | own_vertex;
+}
+constexpr uint32_t NodeOf(uint32_t corner) {
+  return corner >> kOwnVertexBits;
+}
+constexpr uint32_t OwnVertexOf(uint32_t corner) {
+  return corner & ((1U << kOwnVertexBits) - 1U);
+}
+
 struct BorderVertex {
   uint64_t line = 0;      // meridian: grid x; parallel: grid y with kParallel set
   uint64_t position = 0;  // along the line; 2^32 on a parallel is 180 E seen from the west
-  uint32_t vertex = 0;
+  uint32_t corner = 0;
   uint32_t rank = 0;  // lower wins
 };
 
@@ -30,7 +43,7 @@ class BorderLines {
  public:
   void Clear();
   // rank: the place of the quadnode among all of the cut, finest first (RankNodes).
-  void Add(Quadcode node, Border border, int post, uint32_t vertex, uint32_t rank);
+  void Add(Quadcode node, Border border, int post, uint32_t corner, uint32_t rank);
   // No Add after this.
   void Seal();
 

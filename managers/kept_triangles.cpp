@@ -95,6 +95,14 @@ KeptTriangles::Choice KeptTriangles::For(const CutNode& node, const Sight& sight
   return {&kept.mesh, holds ? kept.worst * growth : kept.worst, !holds};
 }
 
+std::vector<Quadcode> KeptTriangles::Unused() const {
+  std::vector<Quadcode> unused;
+  for (const auto& [node, kept] : kept_) {
+    if (kept.list != list_) unused.push_back(node);
+  }
+  return unused;
+}
+
 void KeptTriangles::ForgetUnused() {
   std::erase_if(kept_, [&](const auto& entry) { return entry.second.list != list_; });
   ++list_;

@@ -32,6 +32,10 @@ struct KeptMesh {
   std::vector<Triangle> inner;       // with no post on the quadnode's border
   std::vector<Triangle> at_border;
   std::vector<uint16_t> border_vertices;
+  // The triangles at the border as they are joined to the neighbours': three corners (border_lines.h) each, which
+  // number quadnodes as owners does.
+  std::vector<uint32_t> joined;
+  std::vector<Quadcode> owners;
   // Rises of the vertices are of rises_from_s and gone at rises_until_s, clock seconds; no later: none rises.
   double rises_from_s = 0, rises_until_s = 0;
 };
@@ -49,6 +53,8 @@ class KeptTriangles {
   // REQUIRES: the pages of the list before this one are still in memory.
   Choice For(const CutNode& node, const Sight& sight, const Frame& frame, double error_px);
 
+  // Quadnodes that the list before had and this one has not asked for.
+  std::vector<Quadcode> Unused() const;
   // Ends a list: what it did not ask for is forgotten.
   void ForgetUnused();
 

@@ -4,13 +4,16 @@
 //
 // Between quadnodes, each side chooses for itself; then the line that they share is made the same for both. All posts
 // that lie on a border line and are drawn by any quadnode are gathered; each position gets one canonical vertex (that
-// of the finest quadnode, and among equals of the least quadcode); and a triangle whose edge lies on the line is cut as
-// a fan at every canonical vertex of that edge. This works for quadnodes of any levels, across quadtrees, frames and
-// 180 E. On a pole line all positions are one point, hence one vertex.
+// of the finest quadnode, and among equals of the least quadcode; border_lines.h); and a triangle whose edge lies on
+// the line is cut as a fan at every canonical vertex of that edge (border_joiner.h). This works for quadnodes of any
+// levels, across quadtrees, frames and 180 E. On a pole line all positions are one point, hence one vertex.
+//
+// All of that is done again only where something changed since the list before, and around it (reach.h).
 //
 // Threads: pure.
 #pragma once
 
+#include "managers/border_lines.h"
 #include "managers/cut.h"
 #include "managers/kept_triangles.h"
 #include "managers/surface_morph.h"
@@ -32,6 +35,7 @@ struct MeshStatistics {
 struct SurfaceState {
   KeptTriangles kept;
   SurfaceMorph morph;
+  BorderLines lines;  // of the list in the making
 };
 
 // Appends to list.vertices, list.indices, list.frames and list.terrain_draws (one draw a cut node, in the same order),

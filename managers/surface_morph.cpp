@@ -112,7 +112,7 @@ class OldSurface {
 
 void SurfaceMorph::Begin(double now_s, bool jump) {
   now_s_ = now_s;
-  jump_ = jump || old_vertices_.empty();
+  jump_ = jump || !old_vertices_ || old_vertices_->empty();
 }
 
 void SurfaceMorph::Place(const CutNode& node, const Frame& frame, bool is_new, KeptMesh& mesh) {
@@ -154,7 +154,7 @@ void SurfaceMorph::PlaceShared(const CutNode& node, const Frame& frame, uint16_t
   const GridPoint position = PostGrid(node.node).At(shared.post());
   if (IsPole(position)) return;
   const auto old = OldVertexAt(position);
-  if (!old || old_draws_[old_vertices_[*old].draw()].node == node.node) return;
+  if (!old || old_draws_[(*old_vertices_)[*old].draw()].node == node.node) return;
   const glm::vec3 place = PointOf(shared);
   const glm::vec3 point = OldPointIn(frame, *old);
   const float rise_m = glm::dot(point - place, UpIn(frame, place));
@@ -183,19 +183,21 @@ void SurfaceMorph::Remember(const DisplayList& list, std::span<const uint32_t> r
 
 void SurfaceMorph::Prepare(const std::unordered_map<Quadcode, const KeptMesh*>& unchanged) {
   if (jump_) return;
-  table_.assign(std::bit_ceil(2 * old_vertices_.size() + 1), kEmpty);
-  positions_.resize(old_vertices_.size());
+  const std::vector<ListVertex>& vertices = *old_vertices_;
+  table_.assign(std::bit_ceil(2 * vertices.size() + 1), kEmpty);
+  positions_.resize(vertices.size());
   for (const uint32_t draw : old_ranked_) {
     const PostGrid grid(old_draws_[draw].node);
     const uint32_t first = old_first_vertex_[draw];
     if (const auto found = unchanged.find(old_draws_[draw].node); found != unchanged.end()) {
+      if (found->second == nullptr) continue;
       for (const uint16_t own : found->second->border_vertices) {
-        Index(first + own, grid.At(old_vertices_[first + own].post()));
+        Index(first + own, grid.At(vertices[first + own].post()));
       }
       continue;
     }
-    const size_t end = draw + 1 < old_first_vertex_.size() ? old_first_vertex_[draw + 1] : old_vertices_.size();
-    for (uint32_t vertex = first; vertex < end; ++vertex) Index(vertex, grid.At(old_vertices_[vertex].post()));
+    const size_t end = draw + 1 < old_first_vertex_.size() ? old_first_vertex_[draw + 1] : vertices.size();
+    for (uint32_t vertex = first; vertex < end; ++vertex) Index(vertex, grid.At(vertices[vertex].post()));
   }
 }
 
@@ -217,7 +219,7 @@ std::optional<uint32_t> SurfaceMorph::OldVertexAt(GridPoint position) const {
 }
 
 glm::vec3 SurfaceMorph::OldPointIn(const Frame& frame, uint32_t vertex) const {
-  const ListVertex& old = old_vertices_[vertex];
+  const ListVertex& old = (*old_vertices_)[vertex];
   const TerrainDraw& draw = old_draws_[old.draw()];
   const Frame& old_frame = old_frames_[draw.frame];
   glm::vec3 point = PointOf(old);
@@ -227,7 +229,7 @@ glm::vec3 SurfaceMorph::OldPointIn(const Frame& frame, uint32_t vertex) const {
 }
 
 glm::dvec3 SurfaceMorph::OldPointEcef(uint32_t vertex) const {
-  const Frame& old_frame = old_frames_[old_draws_[old_vertices_[vertex].draw()].frame];
+  const Frame& old_frame = old_frames_[old_draws_[(*old_vertices_)[vertex].draw()].frame];
   return old_frame.ToEcef(OldPointIn(old_frame, vertex));
 }
 

@@ -19,6 +19,7 @@
 #include "runtime/scene/display_list.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -37,7 +38,7 @@ class SurfaceMorph {
   void Begin(double now_s, bool jump);
 
   // All meshes of the list are chosen. unchanged: those that are as the old list had them; of these only the border is
-  // looked for again.
+  // looked for again, and nothing where there is no mesh with it.
   void Prepare(const std::unordered_map<Quadcode, const KeptMesh*>& unchanged);
 
   // Gives the rises of a quadnode's vertices for now. is_new: its mesh was chosen for this list.
@@ -61,7 +62,7 @@ class SurfaceMorph {
   double now_s_ = 0;
   bool jump_ = true;
   double old_s_ = 0;
-  std::vector<ListVertex> old_vertices_;
+  std::shared_ptr<const std::vector<ListVertex>> old_vertices_;
   std::vector<TerrainDraw> old_draws_;
   std::vector<Frame> old_frames_;
   std::vector<uint32_t> old_ranked_, old_first_vertex_;

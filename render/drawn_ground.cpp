@@ -25,7 +25,7 @@ class Vertices {
 
   // east_at_pole: a pole is a point of every meridian.
   GridVertex At(uint32_t number, double east_at_pole) const {
-    const ListVertex& vertex = list_.vertices[number];
+    const ListVertex& vertex = (*list_.vertices)[number];
     const Quadcode node = list_.terrain_draws[vertex.draw()].node;
     const uint32_t x = node.SouthWest().x + vertex.post() % kPosts * node.PostSpacing();
     const uint32_t y = node.SouthWest().y + vertex.post() / kPosts * node.PostSpacing();

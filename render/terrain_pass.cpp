@@ -123,7 +123,7 @@ TerrainPass::Layers TerrainPass::LayersOf(uint32_t number, const TerrainDraw& dr
 }
 
 void TerrainPass::SetList(const DisplayList& list) {
-  Send(vertices_, list.vertices);
+  Send(vertices_, *list.vertices);
   Send(indices_, list.indices);
   SetDraws(list);
 }

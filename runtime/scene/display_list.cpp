@@ -10,7 +10,11 @@ void DisplayList::Clear() {
   records.clear();
   volumes.clear();
   frames.clear();
-  vertices.clear();
+  if (vertices.use_count() == 1) {
+    vertices->clear();
+  } else {
+    vertices = std::make_shared<std::vector<ListVertex>>();
+  }
   indices.clear();
   terrain_draws.clear();
   instances.clear();

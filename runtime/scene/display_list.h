@@ -16,6 +16,9 @@
 // A vertex may start away from its place, where the list before had the surface, and goes there: t seconds after
 // time_s it is rise_m * (1 - t / rise_s) over it, rise_s being that of its quadnode, and from rise_s on not at all.
 //
+// The manager may keep the vertices of a list, to start the next list's from them; nobody changes them while two have
+// them.
+//
 // Everything that a list names is pinned by it until it is cleared: pages in the cache (page_pins), slots on the GPU
 // (gpu_pins). `uploads` are the images that the manager would draw if they were on the GPU, most wanted first.
 //
@@ -34,6 +37,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -116,7 +120,7 @@ struct DisplayList {
   std::vector<ListRecord> records;
   std::vector<BoundingSphere> volumes;
   std::vector<Frame> frames;
-  std::vector<ListVertex> vertices;
+  std::shared_ptr<std::vector<ListVertex>> vertices = std::make_shared<std::vector<ListVertex>>();
   std::vector<uint32_t> indices;
   std::vector<TerrainDraw> terrain_draws;
   std::vector<ObjectInstance> instances;

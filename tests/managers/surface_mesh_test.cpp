@@ -45,7 +45,7 @@ Surface MakeSurface(std::mt19937& random, const std::vector<Quadcode>& nodes, co
 
 // Position on the grid of a vertex; all of a pole is one position, and 180 E is 180 W.
 GridPoint PositionOf(const Surface& surface, uint32_t vertex) {
-  const ListVertex& v = surface.list.vertices[vertex];
+  const ListVertex& v = (*surface.list.vertices)[vertex];
   const Quadcode node = surface.list.terrain_draws[v.draw()].node;
   GridPoint point{node.SouthWest().x + v.post() % kPosts * node.PostSpacing(),
                   node.SouthWest().y + v.post() / kPosts * node.PostSpacing()};
@@ -102,6 +102,59 @@ TEST(SurfaceMesh, RandomCutsAreClosedFromAnywhere) {
   }
 }
 
+// Splits a quadnode, or puts one in the place of its four children.
+void ChangeCut(std::mt19937& random, std::vector<Quadcode>& nodes) {
+  constexpr int kDeepest = 9;
+  const Quadcode chosen = nodes[std::uniform_int_distribution<size_t>(0, nodes.size() - 1)(random)];
+  if (random() % 2 == 0 && chosen.level() < kDeepest) {
+    std::erase(nodes, chosen);
+    for (int which = 0; which < 4; ++which) nodes.push_back(chosen.Child(which));
+    return;
+  }
+  if (chosen.is_root()) return;
+  const Quadcode parent = chosen.Parent();
+  const auto is_child = [&](Quadcode node) { return !node.is_root() && node.Parent() == parent; };
+  if (std::count_if(nodes.begin(), nodes.end(), is_child) != 4) return;
+  std::erase_if(nodes, is_child);
+  nodes.push_back(parent);
+}
+
+// Lists take over from one another what did not change, whatever the order in which quadnodes come.
+TEST(SurfaceMesh, StaysClosedFromListToList) {
+  std::mt19937 random(11);
+  std::vector<Quadcode> nodes = RandomCutNodes(random, 40, 9);
+  std::map<Quadcode, std::unique_ptr<TerrainPage>> pages;
+  SurfaceState state;
+  Sight sight;
+  sight.cos_corner = 0.7;
+  uint64_t kept = 0;
+  for (int number = 0; number < 40; ++number) {
+    for (int change = 0; change < number % 4; ++change) ChangeCut(random, nodes);
+    std::shuffle(nodes.begin(), nodes.end(), random);
+    sight.eye_ecef = ToEcef({37 + 0.05 * (number / 5), -118, 4e6});
+    sight.forward_ecef = -glm::normalize(sight.eye_ecef);
+    Surface surface;
+    for (const Quadcode node : nodes) {
+      auto& page = pages[node];
+      if (!page) page = FlatPage(node, RandomDeltas(random));
+      CutNode drawn;
+      drawn.node = node;
+      drawn.page = page.get();
+      drawn.error_scale = 700;
+      drawn.nearest_depth_m = std::max(1.0, glm::distance(page->center_ecef, sight.eye_ecef) - page->radius_m);
+      surface.cut.push_back(drawn);
+    }
+    const uint64_t chosen = state.kept.chosen();
+    state.morph.Begin(number / 30.0, false);
+    surface.statistics = BuildSurface(surface.cut, sight, 32.0, state, surface.list);
+    kept += nodes.size() - (state.kept.chosen() - chosen);
+    ExpectClosed(surface);
+    if (testing::Test::HasFailure()) return;
+  }
+  EXPECT_GT(kept, 20 * nodes.size()) << "nothing would be taken over";
+  EXPECT_LT(kept, 39 * nodes.size()) << "nothing would have changed";
+}
+
 TEST(SurfaceMesh, ClosedWhereAQuadnodeLiesBesideOnesManyLevelsFiner) {
   // The neighbourhood of a corner of the coarse quadnode, split to level 12, across a tree border, 180 E and a pole.
   for (const auto& [latitude, longitude] :
@@ -124,7 +177,7 @@ TEST(SurfaceMesh, EveryTriangleFacesOutwards) {
   std::mt19937 random(4);
   const Surface surface = MakeSurface(random, RandomCutNodes(random, 20, 8), ToEcef({10, 20, 1e6}), 16.0);
   const auto position = [&](uint32_t vertex) {
-    const ListVertex& v = surface.list.vertices[vertex];
+    const ListVertex& v = (*surface.list.vertices)[vertex];
     return surface.list.frames[surface.list.terrain_draws[v.draw()].frame].ToEcef({v.x, v.y, v.z});
   };
   for (size_t t = 0; t < surface.list.indices.size(); t += 3) {

@@ -167,7 +167,7 @@ TEST_F(SurfaceMorphTest, WhereTheEyeHasJumpedSoDoesTheSurface) {
   List(CutTo(3, 60'000), 0, true);
   const auto finer = List(CutTo(6, 50'000), 1, true);
   EXPECT_EQ(statistics_.rises_until_s, 0);
-  EXPECT_TRUE(std::all_of(finer->vertices.begin(), finer->vertices.end(),
+  EXPECT_TRUE(std::all_of(finer->vertices->begin(), finer->vertices->end(),
                           [](const ListVertex& vertex) { return vertex.rise_m == 0; }));
 }
 

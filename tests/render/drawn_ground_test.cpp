@@ -70,7 +70,7 @@ TEST(DrawnGround, IsWhereTheVerticesAreOnTheirWay) {
   Ground ground(
       10, 20, 10, [](double, double) { return 700.0; }, 8);
   for (TerrainDraw& draw : ground.list.terrain_draws) draw.rise_s = 2;
-  for (ListVertex& vertex : ground.list.vertices) vertex.rise_m = -300;
+  for (ListVertex& vertex : *ground.list.vertices) vertex.rise_m = -300;
   EXPECT_NEAR(*DrawnGroundAt(ground.list, {10, 20, 0}, -1), 400.0, 0.2);
   EXPECT_NEAR(*DrawnGroundAt(ground.list, {10, 20, 0}, 0.5), 475.0, 0.2);
   EXPECT_NEAR(*DrawnGroundAt(ground.list, {10, 20, 0}, 2), 700.0, 0.2);

@@ -157,13 +157,13 @@ inline void AddSurface(DisplayList& list, Scene& scene, const std::vector<Quadco
     PagePin pin = scene.Find(scene.terrain_type(), node);
     const TerrainPage& page = pin.as<TerrainPage>();
     volumes.push_back({page.center_ecef, page.radius_m});
-    first_vertices[{node.column(), node.row()}] = static_cast<uint32_t>(list.vertices.size());
+    first_vertices[{node.column(), node.row()}] = static_cast<uint32_t>(list.vertices->size());
     const uint32_t draw = first_draw + static_cast<uint32_t>(first_vertices.size()) - 1;
     for (int row = 0; row < kPosts; row += step) {
       for (int column = 0; column < kPosts; column += step) {
         const auto post = static_cast<uint32_t>(row * kPosts + column);
         const TerrainVertex& v = page.vertices[post];
-        list.vertices.push_back({v.x, v.y, v.z, v.normal, ListVertex::PlaceOf(draw, post), 0.0F});
+        list.vertices->push_back({v.x, v.y, v.z, v.normal, ListVertex::PlaceOf(draw, post), 0.0F});
       }
     }
     list.page_pins.push_back(std::move(pin));
