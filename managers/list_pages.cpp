@@ -52,6 +52,16 @@ bool ListPages::Want(const PageKey& key, float priority) {
   return true;
 }
 
+bool ListPages::WantSoon(const PageKey& key, float priority) {
+  Known& known = Look(key);
+  if (known.wanted) return true;
+  if (known.page != nullptr || !paging_.cache.FailureOf(key).ok()) return false;
+  known.wanted = true;
+  wishes_.push_back({key, priority});
+  ++foreseen_;
+  return true;
+}
+
 int* ListPages::CountOf(const PageKey& key) {
   switch (paging_.layers.at(key.type).kind) {
     case PageKind::kColour: return &colour_;

@@ -29,6 +29,11 @@ class ListPages final : public PageAccess {
   std::optional<int> Slot(const PageKey& key) override;
   bool Want(const PageKey& key, float priority) override;
 
+  // For a list that is still to come: whether the page is in memory, and a wish that it should come there. Of an image
+  // this uses nothing of ImageLimits.
+  bool IsInMemory(const PageKey& key) const { return paging_.cache.Contains(key); }
+  bool WantSoon(const PageKey& key, float priority);
+
   // The page, pinned in the list; nullptr when it is not in memory.
   const Page* Find(const PageKey& key) { return Look(key).page; }
 
@@ -37,7 +42,7 @@ class ListPages final : public PageAccess {
   // Sends the wishes of that view to those queues and sorts the list's uploads, most wanted first.
   void Finish(ViewId view, Queues queues);
   bool at_limit() const { return at_limit_; }  // an image was refused for ImageLimits
-  size_t pages_waiting() const { return wishes_.size() + uploads_.size(); }
+  size_t pages_waiting() const { return wishes_.size() - foreseen_ + uploads_.size(); }
 
  private:
   struct KeyHash {
@@ -68,6 +73,7 @@ class ListPages final : public PageAccess {
   bool at_limit_ = false;
   std::unordered_map<PageKey, Known, KeyHash> known_;
   std::vector<Wish> wishes_;
+  size_t foreseen_ = 0;  // of the wishes
   std::vector<Upload> uploads_;
 };
 

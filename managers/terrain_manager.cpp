@@ -2,6 +2,7 @@
 
 #include "managers/cut.h"
 #include "managers/eye_jump.h"
+#include "managers/foresight.h"
 #include "managers/held_bound.h"
 #include "managers/image_fade.h"
 #include "managers/list_pages.h"
@@ -80,8 +81,9 @@ class TerrainManager::Worker {
     list.statistics.held_error_px = held.error_px;
     ListPages pages(paging_, terrain_, list, image_limits_);
     CutLimits limits;
-    if (static_cast<double>(paging_.cache.PinnedBytes()) >
-        kPinnedShareOfBudget * static_cast<double>(paging_.cache.budget_bytes())) {
+    const bool is_full = static_cast<double>(paging_.cache.PinnedBytes()) >
+                         kPinnedShareOfBudget * static_cast<double>(paging_.cache.budget_bytes());
+    if (is_full) {
       limits.max_nodes = std::min(limits.max_nodes, last_nodes_);
     }
     Cut cut = SelectCut(held, matrices, paging_.layers, terrain_, limits, pages);
@@ -97,6 +99,9 @@ class TerrainManager::Worker {
     list.view = view_id_;
     list.view_number = view.number;
     list.number = ++number_;
+    if (!is_full && pages.pages_waiting() == 0) {
+      Foresee(held, now_s, list.statistics.height_above_ground_m, paging_.layers, terrain_, limits, pages);
+    }
     pages.Finish(view_id_, ListPages::Queues::kTerrain);
 
     DisplayList::Statistics& statistics = list.statistics;

@@ -26,6 +26,10 @@ Lane4 SquareRoots(const Lane4& squared) {
   return roots;
 }
 
+float GreatestOf(const Lane4& lanes) {
+  return std::max(std::max(lanes[0], lanes[1]), std::max(lanes[2], lanes[3]));
+}
+
 // The most of the blocks that the four cells around a post lie in.
 float ErrorAround(Post post, const ErrorBlocks& errors_m) {
   float most = 0;
@@ -67,12 +71,11 @@ class Surface {
     return std::sqrt(SquaredDistance(post, 0.5F * (at(a) + at(b)))) + left_out_[static_cast<size_t>(post.index())];
   }
 
-  // The most, over posts (first .. last, row), of the distance from the plane point that begins at `start` and moves by
-  // `step` a column, and of what finer pages add at the post.
-  float RowError(int row, int first, int last, const glm::vec3& start, const glm::vec3& step) const {
+  // Raises `greatest` to the most, over posts (first .. last, row), of the distance from the plane point that begins at
+  // `start` and moves by `step` a column, and of what finer pages add at the post.
+  void AddRow(int row, int first, int last, const glm::vec3& start, const glm::vec3& step, Lane4& greatest) const {
     const int offset = row * kPosts;
     const Lane4 lane{0, 1, 2, 3};
-    Lane4 greatest{0, 0, 0, 0};
     for (int column = first; column <= last; column += 4) {
       const auto index = static_cast<size_t>(offset + column);
       const Lane4 along = lane + static_cast<float>(column - first);
@@ -84,7 +87,6 @@ class Surface {
       error = along <= static_cast<float>(last - first) + nothing ? error : nothing;
       greatest = error > greatest ? error : greatest;
     }
-    return std::max(std::max(greatest[0], greatest[1]), std::max(greatest[2], greatest[3]));
   }
 
  private:
@@ -114,14 +116,14 @@ float DiagonalError(const Surface& surface, const Split& split, Post apex) {
   const Plane plane{corner, (surface.at(in_row) - corner) / static_cast<float>(columns),
                     (surface.at(in_column) - corner) / static_cast<float>(rows), apex};
   const int side = std::abs(rows);
-  float greatest = 0;
+  Lane4 greatest{0, 0, 0, 0};
   for (int away = 0; away < side; ++away) {  // rows from the apex; the last is a single corner
     const int row = apex.row + (rows > 0 ? away : -away);
     const int width = side - away;
     const int first = columns > 0 ? apex.column : apex.column - width;
-    greatest = std::max(greatest, surface.RowError(row, first, first + width, plane.At(first, row), plane.per_column));
+    surface.AddRow(row, first, first + width, plane.At(first, row), plane.per_column, greatest);
   }
-  return greatest;
+  return GreatestOf(greatest);
 }
 
 // hypotenuse along a row or a column, `post` in its middle.
@@ -135,16 +137,16 @@ float StraightError(const Surface& surface, const Split& split, Post post, Post 
   const glm::vec3 along = (b - a) / static_cast<float>(2 * span);
   const glm::vec3 across = (surface.at(apex) - middle) / static_cast<float>(side);
   const Plane plane{middle, along_row ? along : across, along_row ? across : along, post};
-  float greatest = 0;
+  Lane4 greatest{0, 0, 0, 0};
   const int first_row = along_row ? 0 : 1 - span;
   for (int away = first_row; away < span; ++away) {
     const int row = along_row && side < 0 ? post.row - away : post.row + away;
     const int width = span - std::abs(away);
     const int first = along_row ? post.column - width : side > 0 ? post.column : post.column - width;
     const int last = along_row ? post.column + width : side > 0 ? post.column + width : post.column;
-    greatest = std::max(greatest, surface.RowError(row, first, last, plane.At(first, row), plane.per_column));
+    surface.AddRow(row, first, last, plane.At(first, row), plane.per_column, greatest);
   }
-  return greatest;
+  return GreatestOf(greatest);
 }
 
 // The two finest levels hold so few posts that they are tried one by one.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <thread>
 #include <utility>
 
 namespace belvedere {
@@ -124,7 +125,8 @@ ReadModule TerrainModule(const Dataset& dataset, const std::optional<int>& layer
   ReadModule module;
   module.layer = kTerrainLayer;
   module.kind = PageKind::kTerrain;
-  module.threads = options.terrain_threads;
+  const auto cores = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
+  module.threads = options.terrain_threads > 0 ? options.terrain_threads : std::min(cores, kMostTerrainThreads);
   for (const LayerRecord& record : dataset.layers()) module.max_level = std::max(module.max_level, record.max_level);
   module.exists = [&dataset](Quadcode node) { return TerrainExists(dataset, node); };
   module.read = [&dataset, layer, elevation, exaggeration = options.exaggeration](ReadContext& context, Quadcode node) {

@@ -33,9 +33,11 @@ inline constexpr const char* kContourLayer = "contours";
 inline constexpr const char* kWaterLayer = "water";
 inline constexpr const char* kModelLayer = "model";
 
+inline constexpr int kMostTerrainThreads = 4;
+
 struct StockOptions {
   double exaggeration = 1;  // of heights, station-wide; > 0
-  int terrain_threads = 1;
+  int terrain_threads = 0;  // 0: one a core, kMostTerrainThreads at most
 };
 
 // Fails when a layer of the dataset has the name of another. The dataset and the catalogue outlive the registry.
