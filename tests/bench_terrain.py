@@ -70,6 +70,14 @@ class Bench:
         self.add("points within 1.1 px at 1 px", "100 %", f"{min(shares):.5f} % (worst {max(worst):.2f} px)",
                  min(shares) == 100.0)
 
+    def greedy_triangles(self):
+        text = self.run("greedy_triangles", self.dataset, 20)
+        ratio, mean, largest, in_all = re.search(
+            r"ratio in picture ([\d.]+), mean ([\d.]+), largest ([\d.]+); in all ([\d.]+)\n$", text).groups()
+        self.add("triangles at 1 px over those of a greedy full search", "<= 1.3",
+                 f"{ratio} (poses: mean {mean}, largest {largest}; with those beside the picture {in_all})",
+                 float(ratio) <= 1.3)
+
     def figure(self, what, limit, words, pattern, kept):
         value = re.search(pattern, self.run("station_figures", *words)).group(1)
         self.add(what, limit, value, kept(float(value)))
@@ -101,6 +109,7 @@ def main():
     try:
         bench.tours()
         bench.screen_error()
+        bench.greedy_triangles()
         bench.station()
     except (Problem, OSError, AttributeError, ValueError) as problem:
         print(f"bench_terrain: {problem}", file=sys.stderr)
