@@ -15,7 +15,6 @@
 namespace belvedere {
 namespace {
 
-constexpr double kShareOutOfFrustum = 0.08;  // of the error that counts for a quadnode beside the picture
 constexpr double kShareBesideMap =
     0.005;                              // likewise beside an orthographic picture, where nothing shrinks with distance
 constexpr double kLeastStretch = 0.02;  // straight down is never quite straight down for all of a quadnode
@@ -267,7 +266,7 @@ class Selection {
     if (matrices_.horizon.Hides(sphere)) {
       measure.share = 0;
     } else if (matrices_.frustum.Hides(sphere)) {
-      measure.share = sight_.perspective ? kShareOutOfFrustum : kShareBesideMap;
+      measure.share = sight_.perspective ? kShareBesidePicture : kShareBesideMap;
     }
     const glm::dvec3 center = (page.center_ecef - matrices_.eye_ecef) * view_.ecef_from_camera;  // camera axes
     const glm::dvec3 up = glm::normalize(page.center_ecef) * view_.ecef_from_camera;
@@ -345,9 +344,18 @@ class Selection {
 
 Sight SightOf(const ViewParameters& view, const glm::dvec3& eye_ecef) {
   const double tan_half = std::tan(0.5 * view.vertical_fov.value);
-  const double aspect = static_cast<double>(view.width_px) / view.height_px;
-  return {eye_ecef, -view.ecef_from_camera[2], 1.0 / std::sqrt(1.0 + tan_half * tan_half * (1.0 + aspect * aspect)),
-          view.projection == Projection::kPerspective};
+  const double tan_half_width = tan_half * view.width_px / view.height_px;
+  Sight sight;
+  sight.eye_ecef = eye_ecef;
+  sight.forward_ecef = -view.ecef_from_camera[2];
+  sight.cos_corner = 1.0 / std::sqrt(1.0 + tan_half * tan_half + tan_half_width * tan_half_width);
+  sight.perspective = view.projection == Projection::kPerspective;
+  if (!sight.perspective) return sight;
+  const std::array<glm::dvec3, 4> inwards{glm::dvec3(1, 0, -tan_half_width), glm::dvec3(-1, 0, -tan_half_width),
+                                          glm::dvec3(0, 1, -tan_half), glm::dvec3(0, -1, -tan_half)};
+  for (size_t side = 0; side < inwards.size(); ++side)
+    sight.inwards_ecef[side] = view.ecef_from_camera * glm::normalize(inwards[side]);
+  return sight;
 }
 
 Cut SelectCut(const ViewParameters& view, const ViewMatrices& matrices, const LayerTable& layers, DataType terrain,

@@ -12,8 +12,9 @@
 //     e * pixels_per_radian * g / z,   g = |(u_x, u_y) - (x, y) u_z / z|
 // with x, y, z its place and u_x, u_y, u_z the vertical in camera axes, z along the line of view. g is convex in (x, y)
 // / z, so its greatest value over a quadnode is at a corner of what the quadnode covers of the picture; each quadnode
-// takes that once, as error_scale. z is taken anew for every vertex (surface_mesh.h). Quadnodes out of sight keep a
-// share of their error, so that turning the head does not start from nothing.
+// takes that once, as error_scale. z is taken anew for every vertex (surface_mesh.h). What is out of sight, quadnodes
+// and triangles within them (post_selection.h), keeps a share of its error, so that turning the head does not start
+// from nothing.
 //
 // Units: metres, pixels, ECEF. Threads: pure; PageAccess is called on the caller's thread.
 #pragma once
@@ -27,6 +28,8 @@
 #include <vector>
 
 namespace belvedere {
+
+inline constexpr double kShareBesidePicture = 0.08;  // of the error that counts beside a perspective picture
 
 // What the cut needs to know of pages; whatever it is given stays valid as long as the list that is being built.
 class PageAccess {
@@ -46,6 +49,8 @@ struct Sight {
   glm::dvec3 forward_ecef{};
   double cos_corner = 1;  // cosine of the angle from the line of view to a corner of the picture
   bool perspective = true;
+  // Unit normals, inwards, of the planes through the eye and a side of the picture; zero where they are not known.
+  std::array<glm::dvec3, 4> inwards_ecef{};
 };
 Sight SightOf(const ViewParameters& view, const glm::dvec3& eye_ecef);
 

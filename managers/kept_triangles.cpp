@@ -21,12 +21,22 @@ KeptTriangles::KeptTriangles() {
   vertex_of_post_.fill(kNoVertex);
 }
 
+// Whether what was left out beside the picture lies there still.
+bool KeptTriangles::StaysBeside(const Kept& kept, const Sight& sight) {
+  if (!kept.beside) return true;
+  double turned = 0;
+  for (size_t side = 0; side < sight.inwards_ecef.size(); ++side)
+    turned = std::max(turned, glm::distance(sight.inwards_ecef[side], kept.sight.inwards_ecef[side]));
+  const double moved_m = glm::distance(sight.eye_ecef, kept.sight.eye_ecef);
+  return moved_m <= (kBesideGuard - turned) * kept.nearest_depth_m;
+}
+
 // By how much errors on the screen may have grown since the choice; infinite where the choice is of something else.
 double KeptTriangles::GrowthOfError(const Kept& kept, const CutNode& node, const Sight& sight) {
   constexpr double kNever = std::numeric_limits<double>::infinity();
   const bool same = kept.page == node.page && kept.finest == node.finest &&
                     kept.sight.perspective == sight.perspective && kept.sight.cos_corner == sight.cos_corner;
-  if (!same) return kNever;
+  if (!same || !StaysBeside(kept, sight)) return kNever;
   if (kept.error_scale == node.error_scale && kept.error_scale == 0) return 1.0;
   if (kept.error_scale == 0) return kNever;
   const double growth = node.error_scale / kept.error_scale;
@@ -56,6 +66,7 @@ void KeptTriangles::Choose(Kept& kept, const CutNode& node, const Sight& sight, 
   kept.worst =
       static_cast<double>(posts_.Run(node, sight, frame, tighter_px, drawn_before_, leave_out_at, triangles_)) /
       (1.0 + kKeepMargin);
+  kept.beside = posts_.left_out_beside();
   FillMesh(*node.page, kept.mesh);
 }
 

@@ -6,6 +6,9 @@
 //     z - |eye moved| - |line of view turned| * (farthest distance of the quadnode),
 // and z is at least the quadnode's nearest depth then.
 //
+// What is left out because it lies beside the picture stays left out as long as it surely lies there
+// (post_selection.h).
+//
 // A post that was drawn is left out again only when its error is half the bound, or a pixel where the bound is less
 // than two: so what is left out moves the surface by less than a pixel.
 //
@@ -68,10 +71,12 @@ class KeptTriangles {
     double nearest_depth_m = 0;
     double error_px = 0;
     bool finest = true;
+    bool beside = false;  // something is left out because it lies beside the picture
     KeptMesh mesh;
     double worst = 0;  // in units of error_px, with the error_scale and from where it was chosen
     uint64_t list = 0;
   };
+  static bool StaysBeside(const Kept& kept, const Sight& sight);
   static double GrowthOfError(const Kept& kept, const CutNode& node, const Sight& sight);
   void Choose(Kept& kept, const CutNode& node, const Sight& sight, const Frame& frame, double error_px);
   void FillMesh(const TerrainPage& page, KeptMesh& mesh);

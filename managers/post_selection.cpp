@@ -25,9 +25,11 @@ struct PostSelection::LocalView {
   glm::vec3 forward;
   float cos_corner;
   bool perspective;
-  float scale;            // error in metres times this is the least depth at which it keeps the bound
-  float nearest_depth_m;  // CutNode::nearest_depth_m
-  float left_over_m;      // what the quadnode leaves whatever is drawn
+  float scale;                         // error in metres times this is the least depth at which it keeps the bound
+  float nearest_depth_m;               // CutNode::nearest_depth_m
+  float left_over_m;                   // what the quadnode leaves whatever is drawn
+  std::array<glm::vec3, 4> inwards{};  // Sight::inwards_ecef of the sides beyond which some of the quadnode may lie
+  size_t sides = 0;                    // of those
 
   LocalView(const CutNode& node, const Sight& sight, const Frame& frame, double error_px)
       : page(*node.page),
@@ -37,7 +39,23 @@ struct PostSelection::LocalView {
         perspective(sight.perspective),
         scale(static_cast<float>(node.error_scale / error_px)),
         nearest_depth_m(static_cast<float>(node.nearest_depth_m)),
-        left_over_m(node.finest ? 0.0F : page.error_m) {}
+        left_over_m(node.finest ? 0.0F : page.error_m) {
+    if (!perspective || !node.visible) return;
+    for (const glm::dvec3& inward_ecef : sight.inwards_ecef) {
+      const double least_m = glm::dot(page.center_ecef - sight.eye_ecef, inward_ecef) - page.radius_m;
+      if (least_m < 0) inwards[sides++] = glm::vec3(inward_ecef * frame.ecef_from_frame);
+    }
+  }
+
+  // All triangles that the post splits lie beside the picture, and well so.
+  bool IsBeside(int post, int level) const {
+    const float spread_m = page.spread_m[static_cast<size_t>(level)];
+    const TerrainVertex& vertex = page.vertices[static_cast<size_t>(post)];
+    const glm::vec3 away(vertex.x - eye.x, vertex.y - eye.y, vertex.z - eye.z);
+    const float beyond_m = spread_m + static_cast<float>(kBesideGuard) * (glm::length(away) + spread_m);
+    return std::any_of(inwards.begin(), inwards.begin() + sides,
+                       [&](const glm::vec3& inward) { return glm::dot(away, inward) < -beyond_m; });
+  }
 
   // Least depth of any point of the triangles that the post splits.
   float LeastDepth(int post, int level) const {
@@ -58,6 +76,7 @@ float PostSelection::Run(const CutNode& node, const Sight& sight, const Frame& f
   for (const int corner : {kSouthWest, kSouthEast, kNorthWest, kNorthEast})
     states_[static_cast<size_t>(corner)] = kDrawn;
   worst_ = 0;
+  left_out_beside_ = false;
   drawn_.clear();
   Test(Post{kCells / 2, kCells / 2}, 0, view);
   // In the order in which they were found: what Draw has asked of memory for a post has come when its turn does.
@@ -100,14 +119,19 @@ void PostSelection::Test(Post post, int level, const LocalView& view) {
   // Whoever jumps to the other side of the world finds it round, also in the list that was made before the jump.
   if (delta_m > kAlwaysDrawn_m) return Draw(post, view);
   // A quadnode that must serve although its own posts are too coarse draws what its relief asks and no more.
-  const float error = std::max(0.0F, delta_m - view.left_over_m) * view.scale;
+  float error = std::max(0.0F, delta_m - view.left_over_m) * view.scale;
   // Most posts are done with before their place is looked up in memory.
   float least_depth_m = view.perspective ? view.nearest_depth_m : 1.0F;
-  const float asked = state == kDrawnBefore ? error * stay_ : error;
-  if (asked > least_depth_m && view.perspective) least_depth_m = view.LeastDepth(post.index(), level);
-  if (asked > std::max(least_depth_m, kLeastDepth_m)) return Draw(post, view);
+  const float stay = state == kDrawnBefore ? stay_ : 1.0F;
+  if (error * stay > least_depth_m && view.perspective) least_depth_m = view.LeastDepth(post.index(), level);
+  least_depth_m = std::max(least_depth_m, kLeastDepth_m);
+  if (error * stay > least_depth_m && view.sides > 0 && view.IsBeside(post.index(), level)) {
+    error *= static_cast<float>(kShareBesidePicture);
+    left_out_beside_ |= error * stay <= least_depth_m;
+  }
+  if (error * stay > least_depth_m) return Draw(post, view);
   states_[index] = kLeftOut;
-  worst_ = std::max(worst_, error / std::max(least_depth_m, kLeastDepth_m));
+  worst_ = std::max(worst_, error / least_depth_m);
 }
 
 void PostSelection::Emit(int a, int b, int c, int level, std::vector<PostTriangle>& out) const {

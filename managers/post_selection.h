@@ -7,6 +7,10 @@
 // edge to edge. A post is looked at once, and only when a triangle that it would split exists: the work is proportional
 // to what is drawn.
 //
+// Triangles that lie beside the picture, and by more than kBesideGuard away from it, need keep their error under a
+// looser bound only: kShareBesidePicture of it counts. They lie there as well for any later eye, whose picture's sides
+// have turned, and which has come nearer by a share of the least distance, by no more than kBesideGuard together.
+//
 // Source of the bisection: Evans, Kirkpatrick, Townsend, "Right-triangulated irregular networks" (Algorithmica 2001).
 // Units: pixels, metres. Threads: one an object.
 #pragma once
@@ -25,6 +29,8 @@ struct PostTriangle {
   uint16_t a, b, c;  // posts; right angle at a, counter-clockwise seen from above
 };
 
+inline constexpr double kBesideGuard = 0.05;  // sine of an angle
+
 class PostSelection {
  public:
   // Appends the quadnode's triangles to `out`. Returns the largest error that they may leave, in units of the bound.
@@ -32,6 +38,8 @@ class PostSelection {
   // units of the bound, 0 .. 1.
   float Run(const CutNode& node, const Sight& sight, const Frame& frame, double error_px,
             std::span<const uint16_t> drawn_before, float leave_out_at, std::vector<PostTriangle>& out);
+  // The last run left something out because it lay beside the picture.
+  bool left_out_beside() const { return left_out_beside_; }
 
  private:
   struct LocalView;
@@ -44,6 +52,7 @@ class PostSelection {
   std::array<State, kVerticesPerPage> states_{};
   std::vector<uint16_t> drawn_;  // posts but for the corners
   float worst_ = 0;
+  bool left_out_beside_ = false;
   float stay_ = 1;  // by how much the errors of posts that were drawn before count for more
 };
 

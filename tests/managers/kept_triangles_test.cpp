@@ -148,6 +148,19 @@ TEST_F(KeptTrianglesTest, HaveOneVertexAPost) {
   EXPECT_GE(mesh.border_vertices.size(), 4U);
 }
 
+// What was left out beside the picture is chosen anew before it can come into it.
+TEST_F(KeptTrianglesTest, AreChosenAnewWhenThePictureTurnsTowardsWhatIsCoarse) {
+  const glm::dvec3 side = glm::normalize(glm::cross(sight_.forward_ecef, sight_.eye_ecef));
+  sight_.inwards_ecef[2] = side;
+  const size_t before = TrianglesOf(Next());
+  sight_.inwards_ecef[2] = glm::normalize(side + 0.5 * kBesideGuard * sight_.forward_ecef);
+  Next();
+  EXPECT_EQ(kept_.chosen(), 1U);
+  sight_.inwards_ecef[2] = glm::normalize(side + 1.5 * kBesideGuard * sight_.forward_ecef);
+  EXPECT_GT(TrianglesOf(Next()), before);
+  EXPECT_EQ(kept_.chosen(), 2U);
+}
+
 TEST_F(KeptTrianglesTest, AreForgottenOnceAListDoesNotAskForThem) {
   Next();
   kept_.ForgetUnused();

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
 
 namespace belvedere {
@@ -118,6 +119,46 @@ TEST(PostSelection, ReportsTheWorstOfWhatIsLeftOut) {
   const Scene scene(5);
   EXPECT_GT(scene.worst, 0.5F);
   EXPECT_LE(scene.worst, 1.0F);
+}
+
+// Beside the picture a share of the error counts, within it all of it; triangles there do not know of the picture.
+TEST(PostSelection, IsCoarserBesideThePicture) {
+  const Scene whole(6);
+  const glm::dvec3 side = glm::normalize(glm::cross(whole.sight.forward_ecef, whole.sight.eye_ecef));
+  const auto chosen = [&](const glm::dvec3& inward_ecef, bool* left_out) {
+    Sight sight = whole.sight;
+    sight.inwards_ecef[1] = inward_ecef;
+    PostSelection selection;
+    std::vector<PostTriangle> triangles;
+    EXPECT_LE(selection.Run(whole.node, sight, FrameOf(whole.page->node), kErrorPx, {}, 1.0F, triangles), 1.0F);
+    *left_out = selection.left_out_beside();
+    return triangles;
+  };
+  bool left_out = false;
+  const std::vector<PostTriangle> half = chosen(side, &left_out);
+  EXPECT_TRUE(left_out);
+  EXPECT_LT(half.size() + 1000, whole.triangles.size());
+
+  const auto in_picture = [&](const PostTriangle& triangle) {
+    const auto is_in = [&](int post) {
+      const TerrainVertex& v = whole.page->vertices[static_cast<size_t>(post)];
+      return glm::dot(FrameOf(whole.page->node).ToEcef({v.x, v.y, v.z}) - whole.sight.eye_ecef, side) >= 0;
+    };
+    return is_in(triangle.a) && is_in(triangle.b) && is_in(triangle.c);
+  };
+  const auto key = [](const PostTriangle& t) { return std::array{t.a, t.b, t.c}; };
+  std::set<std::array<uint16_t, 3>> kept;
+  for (const PostTriangle& triangle : half) kept.insert(key(triangle));
+  size_t seen = 0;
+  for (const PostTriangle& triangle : whole.triangles) {
+    if (!in_picture(triangle)) continue;
+    ++seen;
+    ASSERT_TRUE(kept.contains(key(triangle)));
+  }
+  EXPECT_GT(seen, 100U);
+
+  EXPECT_EQ(chosen(glm::dvec3(0), &left_out).size(), whole.triangles.size());
+  EXPECT_FALSE(left_out) << "the sides of the picture are not known";
 }
 
 TEST(PostSelection, FlatGroundIsTwoTriangles) {
