@@ -171,12 +171,12 @@ Count CountOf(std::span<const CutNode> nodes, const DisplayList& list, const Vie
               GreedySearch& search) {
   Count count;
   std::vector<glm::dvec3> ecef;
-  for (const ListVertex& vertex : list.vertices) {
+  for (const ListVertex& vertex : *list.vertices) {
     const Frame& frame = list.frames[list.terrain_draws[vertex.draw()].frame];
     ecef.push_back(frame.ToEcef(glm::dvec3(vertex.x, vertex.y, vertex.z)));
   }
   std::vector<DrawnPosts> drawn(nodes.size(), DrawnPosts(kVerticesPerPage));
-  for (const ListVertex& vertex : list.vertices) drawn[vertex.draw()][vertex.post()] = true;
+  for (const ListVertex& vertex : *list.vertices) drawn[vertex.draw()][vertex.post()] = true;
   for (size_t i = 0; i < nodes.size(); ++i) {
     if (!nodes[i].visible) continue;
     ++count.quadnodes;
