@@ -1,7 +1,7 @@
 // belvedere: the run-time system. Reads the command line and calls the command.
 
 #include "runtime/app/commands_of_program.h"
-#include "runtime/app/iso_time.h"
+#include "runtime/base/iso_time.h"
 #include "runtime/base/log.h"
 
 #include <CLI/CLI.hpp>

@@ -1,8 +1,8 @@
 #include "runtime/app/station_file.h"
 
-#include "runtime/app/iso_time.h"
 #include "runtime/app/key_map.h"
 #include "runtime/app/settings.h"
+#include "runtime/base/iso_time.h"
 
 #include <algorithm>
 #include <filesystem>

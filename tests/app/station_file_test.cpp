@@ -1,6 +1,5 @@
 #include "runtime/app/station_file.h"
 
-#include "runtime/app/iso_time.h"
 #include "runtime/app/settings.h"
 
 #include <gtest/gtest.h>
@@ -151,17 +150,6 @@ TEST(StationFileTest, StationOfTheDemoIsRead) {
 TEST(SettingsTest, NearestWordIsASlipAway) {
   EXPECT_EQ(NearestWord("hieght", {"height", "heading"}), "height");
   EXPECT_EQ(NearestWord("colour", {"lat", "lon"}), "");
-}
-
-TEST(IsoTimeTest, ReadsTimes) {
-  EXPECT_EQ(ParseIsoTime("1970-01-01"), 0.0);
-  EXPECT_EQ(ParseIsoTime("1970-01-02T00:00:01.5Z"), 86401.5);
-  EXPECT_EQ(ParseIsoTime("2026-06-21T19:30:00Z"), 1782070200.0);
-  EXPECT_EQ(ParseIsoTime("2026-06-21 12:30-07:00"), 1782070200.0);
-  for (const char* bad :
-       {"", "today", "2026-13-01", "2026-02-29", "2026-06-21T25:00", "2026-06-21T19:30:00Zx", "2026-6-1"}) {
-    EXPECT_FALSE(ParseIsoTime(bad).has_value()) << bad;
-  }
 }
 
 }  // namespace
