@@ -26,6 +26,7 @@ cache_MiB = 256
 exaggeration = 2
 frame_ms = 25
 time = "2026-06-21T19:30:00Z"
+time_rate = 3600
 [feed]
 listen = ["127.0.0.1:3000", "239.1.2.3:3001"]
 exercise = 7
@@ -65,6 +66,7 @@ position = [10, -20]
   EXPECT_EQ(station->exaggeration, 2);
   EXPECT_EQ(station->frame_ms, 25);
   EXPECT_EQ(station->utc_s, 1782070200.0);
+  EXPECT_EQ(station->time_rate, 3600.0);
   EXPECT_EQ(station->feed.listen.size(), 2U);
   EXPECT_EQ(station->feed.exercise, 7);
   EXPECT_EQ(station->render.max_fps, 30);
