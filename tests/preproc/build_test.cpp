@@ -487,5 +487,61 @@ TEST(Build, WhatIsHiddenInOneStepAndSeenInAnotherIsNoMistake) {
   EXPECT_EQ(report.warnings[0].source, "under.tif");
 }
 
+// What a grey overlay is made of: alpha and nodata are where what lies under it is seen.
+TEST(Build, GreySourcesKeepTheirAlphaAndNodata) {
+  const std::string folder = FreshFolder("greys");
+  const auto alpha = [](GDALDataset& d) { d.GetRasterBand(2)->SetColorInterpretation(GCI_AlphaBand); };
+  const auto half_west = [](double grey, double whole) {
+    return [=](int band, int column, int) {
+      return band == 1 ? grey : column < 50 ? whole : column < 100 ? whole / 2 : 0;
+    };
+  };
+  const MadeRaster two{
+      .width = 200, .height = 200, .bands = 2, .affine = Degrees(0, 20, 0.1), .value = {}, .finish = alpha};
+  MadeRaster eight = two, sixteen = two, bare = two, one = two;
+  eight.type = GDT_Byte;
+  eight.value = half_west(180, 255);
+  sixteen.type = GDT_UInt16;
+  sixteen.affine = Degrees(30, 20, 0.1);
+  // From 0 in the north to 65535 in the south.
+  sixteen.value = [whole = half_west(0, 65'535)](int band, int column, int row) {
+    return band == 1 ? row * 65'535.0 / 199 : whole(band, column, row);
+  };
+  one.type = GDT_Byte;
+  one.bands = 1;
+  one.affine = Degrees(60, 20, 0.1);
+  one.value = [](int, int column, int) { return column < 100 ? 90.0 : 255.0; };
+  one.finish = [](GDALDataset& d) { d.GetRasterBand(1)->SetNoDataValue(255); };
+  bare.type = GDT_Byte;
+  bare.affine = Degrees(90, 20, 0.1);
+  bare.value = half_west(70, 255);
+  bare.finish = [](GDALDataset&) {};
+  std::vector<std::string> sources;
+  for (const auto& [name, made] : {std::pair{"eight", &eight}, {"sixteen", &sixteen}, {"one", &one}, {"bare", &bare}}) {
+    Write(folder + "/" + name + ".tif", *made);
+    sources.push_back("path = \"" + std::string(name) + ".tif\"");
+  }
+  const auto report = MustBuild(folder, Layer("imagery", sources));
+  EXPECT_TRUE(report.skipped.empty());
+  const auto dataset = MustOpen(folder);
+  using Rgba = std::array<int, 4>;
+  EXPECT_EQ(TexelAt(*dataset, 10, 2), (Rgba{180, 180, 180, 255}));
+  EXPECT_EQ(TexelAt(*dataset, 10, 7.5), (Rgba{180, 180, 180, 128}));
+  EXPECT_EQ(TexelAt(*dataset, 10, 15), (Rgba{0, 0, 0, 0}));
+  const Rgba middle = TexelAt(*dataset, 10, 32);
+  EXPECT_NEAR(middle[0], 140, 15) << "stretched from about its range";
+  EXPECT_EQ(middle[2], middle[0]);
+  EXPECT_EQ(middle[3], 255);
+  EXPECT_EQ(TexelAt(*dataset, 10, 37.5)[3], 128);
+  EXPECT_EQ(TexelAt(*dataset, 10, 45), (Rgba{0, 0, 0, 0}));
+  EXPECT_EQ(TexelAt(*dataset, 10, 65), (Rgba{90, 90, 90, 255}));
+  EXPECT_EQ(TexelAt(*dataset, 10, 75), (Rgba{0, 0, 0, 0}));
+  EXPECT_EQ(TexelAt(*dataset, 10, 105), (Rgba{70, 70, 70, 255}));
+  const auto said = std::find_if(report.warnings.begin(), report.warnings.end(),
+                                 [](const SourceRemark& remark) { return remark.source == "bare.tif"; });
+  ASSERT_NE(said, report.warnings.end());
+  EXPECT_NE(said->reason.find("not said to be alpha"), std::string::npos) << said->reason;
+}
+
 }  // namespace
 }  // namespace belvedere
