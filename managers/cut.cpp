@@ -246,11 +246,13 @@ class Selection {
     while (level > 0 && TexelRatio(level - 1, measure) <= 1.0) --level;
     const DataType type = view_.image_layers[layer].type;
     const std::optional<Quadcode> best = layers_.DeepestExisting(type, node.Ancestor(level));
+    const bool behind = cut_.behind;
     const ImageUse use = best ? WantImage({type, *best}, node, measure) : ImageUse{};
     if (Before(layer) == type || (use.slot >= 0 && use.source == *best)) return use;
     const int enough = use.slot >= 0 ? use.source.level() : -1;
     const ImageUse before = FinestBefore(Before(layer), node, level, enough);
     if (before.slot < 0) return use;
+    if (!best || before.source.level() >= best->level()) cut_.behind = behind;  // another time, but no coarser
     shown_before_.emplace_back(layer, before.source);
     return before;
   }

@@ -281,6 +281,7 @@ TEST_F(CutTest, TheStepBeforeIsShownUntilTheNextIsAsFine) {
   EXPECT_GT(before.size(), 10U);
   EXPECT_EQ(cut.of_step_before[0], static_cast<int>(before.size()));
   EXPECT_TRUE(cut.waiting);
+  EXPECT_FALSE(cut.behind) << "what is shown is of another time, but no coarser than the bound asks";
   for (const auto& [key, unused] : pages_.wanted) EXPECT_EQ(key.type, kNextImagery) << "what goes is not asked for";
 }
 
