@@ -268,7 +268,10 @@ std::vector<LayerSpec> StepsOf(LayerSpec layer, Repeats repeats) {
     if (source.utc_s) times.insert(*source.utc_s);
   }
   std::vector<LayerSpec> steps;
-  if (times.empty()) steps.push_back(std::move(layer));
+  if (times.empty()) {
+    steps.push_back(std::move(layer));
+    return steps;
+  }
   for (const double utc_s : times) {
     LayerSpec step{layer.name + "@" + FormatIsoTime(utc_s), layer.kind, {}, StepOf{layer.name, utc_s, repeats}};
     for (const bool timed : {false, true}) {

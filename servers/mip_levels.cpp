@@ -73,7 +73,7 @@ Texel MeanAround(const uint8_t* texels, size_t side, size_t column, size_t row) 
   return mean;
 }
 
-void ColourTheRim(uint8_t* texels, size_t side) {
+void ColourRimsOf(uint8_t* texels, size_t side) {
   for (size_t row = 0; row < side; ++row) {
     for (size_t column = 0; column < side; ++column) {
       uint8_t* texel = texels + (row * side + column) * sizeof(Texel);
@@ -98,9 +98,12 @@ void FillMipLevels(ImagePage& page) {
       HalveRgba8(from, to, side);
     }
   }
-  if (page.format == ImageFormat::kR8) return;
+}
+
+void ColourRims(ImagePage& page) {
+  BELVEDERE_CHECK(page.format == ImageFormat::kRGBA8);
   for (int level = 0; level < kImageMipLevels; ++level) {
-    ColourTheRim(page.texels.data() + ImagePage::MipOffset(level, page.format),
+    ColourRimsOf(page.texels.data() + ImagePage::MipOffset(level, page.format),
                  static_cast<size_t>(kImageSide >> level));
   }
 }

@@ -48,6 +48,7 @@ ReadModule ImageryModule(const Dataset& dataset, int layer, const LayerRecord& r
     Result<std::shared_ptr<ImagePage>> page = dataset.ReadImage(layer, node);
     if (!page.ok()) return page.status();
     FillMipLevels(**page);
+    ColourRims(**page);
     return std::unique_ptr<Page>(std::make_unique<ImagePage>(std::move(**page)));
   };
   return module;

@@ -59,6 +59,7 @@ TEST(MipLevels, TheRimOfAnOverlayHasItsColour) {
     }
   }
   FillMipLevels(page);
+  ColourRims(page);
   for (int level = 0; level < kImageMipLevels; ++level) {
     const size_t side = static_cast<size_t>(kImageSide >> level), rim = 100U >> static_cast<unsigned>(level);
     const uint8_t* row = &page.texels[ImagePage::MipOffset(level, page.format) + 4 * side * (side / 2)];
