@@ -11,6 +11,7 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <utility>
 
 namespace belvedere {
 namespace {
@@ -74,13 +75,14 @@ struct Measure {
 class Selection {
  public:
   Selection(const ViewParameters& view, const ViewMatrices& matrices, const LayerTable& layers, DataType terrain,
-            const CutLimits& limits, PageAccess& pages)
+            const CutLimits& limits, PageAccess& pages, std::span<const DataType> before)
       : view_(view),
         matrices_(matrices),
         layers_(layers),
         terrain_(terrain),
         limits_(limits),
         pages_(pages),
+        before_(before),
         sight_(SightOf(view, matrices.eye_ecef)),
         eye_height_m_(ToGeodetic(matrices.eye_ecef).height_m) {
     const double tan_half = std::tan(0.5 * view.vertical_fov.value);
@@ -111,6 +113,7 @@ class Selection {
     cut_.at_limit = !coarse_.empty();
     for (const Coarse& left : coarse_) cut_.behind |= branches_[left.branch].measure.share >= 1.0;
     Emit(roots);
+    CountStepsBefore();
     return std::move(cut_);
   }
 
@@ -201,8 +204,7 @@ class Selection {
     drawn.finest = branch.geometry_ratio <= 1.0;
     drawn.visible = measure.share >= 1.0;
     for (size_t i = 0; i < std::min(view_.image_layers.size(), size_t{kMaxImageLayers}); ++i) {
-      const LayerUse& layer = view_.image_layers[i];
-      if (layer.shown()) drawn.images[i] = ChooseImage(layer.type, branch.node, measure);
+      if (view_.image_layers[i].shown()) drawn.images[i] = ChooseImage(i, branch.node, measure);
     }
     if (drawn.visible && !drawn.finest) {
       drawn.left_over_px = static_cast<float>(branch.page->error_m * measure.error_metre_px);
@@ -216,11 +218,20 @@ class Selection {
   double TextureRatio(Quadcode node, const Measure& measure) const {
     if (node.level() >= kMaxLevel) return 0;
     const Quadcode child = node.Child(0);
-    const bool finer = std::any_of(view_.image_layers.begin(), view_.image_layers.end(), [&](const LayerUse& use) {
-      const Layer& layer = layers_.at(use.type);
-      return use.shown() && child.level() <= layer.max_level && layer.exists(child);
-    });
+    const auto exists = [&](DataType type) {
+      return child.level() <= layers_.at(type).max_level && layers_.at(type).exists(child);
+    };
+    bool finer = false;
+    for (size_t i = 0; i < view_.image_layers.size() && !finer; ++i) {
+      const DataType type = view_.image_layers[i].type;
+      if (view_.image_layers[i].shown()) finer = exists(type) || (Before(i) != type && exists(Before(i)));
+    }
     return finer ? TexelRatio(node.level(), measure) : 0.0;
+  }
+
+  // The step that the layer shows where that of the view is not there yet.
+  DataType Before(size_t layer) const {
+    return layer < before_.size() ? before_[layer] : view_.image_layers[layer].type;
   }
 
   double TexelRatio(int level, const Measure& measure) const {
@@ -228,17 +239,47 @@ class Selection {
     return texel_m * measure.metre_px * measure.texel_share * measure.share / view_.texel_px;
   }
 
-  ImageUse ChooseImage(DataType type, Quadcode node, const Measure& measure) {
+  ImageUse ChooseImage(size_t layer, Quadcode node, const Measure& measure) {
     // The coarsest page whose texels are small enough is as good as any finer one.
     int level = node.level();
     while (level > 0 && TexelRatio(level - 1, measure) <= 1.0) --level;
+    const DataType type = view_.image_layers[layer].type;
     const std::optional<Quadcode> best = layers_.DeepestExisting(type, node.Ancestor(level));
-    if (!best) return {};
-    for (Quadcode source = *best;; source = source.Parent()) {
-      if (const std::optional<int> slot = pages_.Slot({type, source})) return SubRectangle(*slot, source, node);
-      const double ratio = TexelRatio(source.level(), measure) * std::ldexp(1.0, best->level() - source.level());
+    const bool behind = cut_.behind;
+    const ImageUse use = best ? WantImage({type, *best}, node, measure) : ImageUse{};
+    if (Before(layer) == type || (use.slot >= 0 && use.source == *best)) return use;
+    const int enough = use.slot >= 0 ? use.source.level() : -1;
+    const ImageUse before = FinestBefore(Before(layer), node, level, enough);
+    if (before.slot < 0) return use;
+    if (!best || before.source.level() >= best->level()) cut_.behind = behind;  // another time, but no coarser
+    shown_before_.emplace_back(layer, before.source);
+    return before;
+  }
+
+  void CountStepsBefore() {
+    std::sort(shown_before_.begin(), shown_before_.end());
+    const auto end = std::unique(shown_before_.begin(), shown_before_.end());
+    std::for_each(shown_before_.begin(), end, [&](const auto& image) { ++cut_.of_step_before[image.first]; });
+  }
+
+  // The finest image of a step that is on the GPU, of those over `coarser` and up to `level`.
+  ImageUse FinestBefore(DataType type, Quadcode node, int level, int coarser) {
+    const std::optional<Quadcode> best = layers_.DeepestExisting(type, node.Ancestor(level));
+    for (int at = best ? best->level() : coarser; at > coarser; --at) {
+      const Quadcode source = node.Ancestor(at);
+      if (const std::optional<int> slot = pages_.Slot({type, source})) return SubRectangle(*slot, type, source, node);
+    }
+    return {};
+  }
+
+  // The image that is wanted, or the finest of its ancestors that is on the GPU.
+  ImageUse WantImage(const PageKey& wanted, Quadcode node, const Measure& measure) {
+    const auto [type, best] = wanted;
+    for (Quadcode source = best;; source = source.Parent()) {
+      if (const std::optional<int> slot = pages_.Slot({type, source})) return SubRectangle(*slot, type, source, node);
+      const double ratio = TexelRatio(source.level(), measure) * std::ldexp(1.0, best.level() - source.level());
       const float priority = source.is_root() ? 0.5F * kRootPriority : static_cast<float>(std::min(ratio, 1e4));
-      if (source == *best || source.is_root()) {
+      if (source == best || source.is_root()) {
         const bool coming = pages_.Want({type, source}, priority);
         cut_.waiting |= coming;
         cut_.behind |= coming && measure.share >= 1.0;
@@ -247,13 +288,14 @@ class Selection {
     }
   }
 
-  static ImageUse SubRectangle(int slot, Quadcode source, Quadcode node) {
+  static ImageUse SubRectangle(int slot, DataType type, Quadcode source, Quadcode node) {
     const int levels = node.level() - source.level();
     const double scale = std::ldexp(1.0, -levels);
     const auto across = (int64_t{1} << levels) - 1;
     ImageUse use;
     use.slot = slot;
     use.source = source;
+    use.type = type;
     use.scale = static_cast<float>(scale);
     use.offset_u = static_cast<float>(static_cast<double>(node.column() & across) * scale);
     use.offset_v = static_cast<float>(static_cast<double>(node.row() & across) * scale);
@@ -330,6 +372,7 @@ class Selection {
   const DataType terrain_;
   const CutLimits& limits_;
   PageAccess& pages_;
+  const std::span<const DataType> before_;
   const Sight sight_;
   const double eye_height_m_;
   glm::dvec2 half_picture_{};     // of the picture's half sides on the plane at depth 1
@@ -337,6 +380,7 @@ class Selection {
   std::vector<Coarse> coarse_;    // a heap, the worst on top
   int drawn_ = 0;                 // branches without children
   int awaited_ = 0;               // by which drawn_ will grow when the pages wished for have come
+  std::vector<std::pair<size_t, Quadcode>> shown_before_;  // images of the step before, of which layer
   Cut cut_;
 };
 
@@ -359,8 +403,8 @@ Sight SightOf(const ViewParameters& view, const glm::dvec3& eye_ecef) {
 }
 
 Cut SelectCut(const ViewParameters& view, const ViewMatrices& matrices, const LayerTable& layers, DataType terrain,
-              const CutLimits& limits, PageAccess& pages) {
-  return Selection(view, matrices, layers, terrain, limits, pages).Run();
+              const CutLimits& limits, PageAccess& pages, std::span<const DataType> before) {
+  return Selection(view, matrices, layers, terrain, limits, pages, before).Run();
 }
 
 }  // namespace belvedere

@@ -16,6 +16,10 @@
 // and triangles within them (post_selection.h), keeps a share of its error, so that turning the head does not start
 // from nothing.
 //
+// Steps. Where a layer has gone on to another of its steps (step_change.h), a quadnode shows the step before until the
+// image of the new one that suits it is on the GPU, or one as fine as that of the step before: nothing coarser is
+// flashed in. Pages of the step before are shown while they are there and never asked for.
+//
 // Units: metres, pixels, ECEF. Threads: pure; PageAccess is called on the caller's thread.
 #pragma once
 
@@ -25,6 +29,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace belvedere {
@@ -77,14 +82,16 @@ struct Cut {
   std::vector<CutNode> nodes;  // front to back; nodes[i] is drawn by the record with index i
   std::vector<ListRecord> records;
   std::vector<BoundingSphere> volumes;
-  bool behind = false;            // a visible quadnode is coarser than the bounds ask
-  bool waiting = false;           // a page was wanted that can still come
-  bool at_limit = false;          // CutLimits::max_nodes kept quadnodes coarse
-  double left_over_error_px = 0;  // largest error left by visible quadnodes that are not `finest`
+  bool behind = false;                                // a visible quadnode is coarser than the bounds ask
+  bool waiting = false;                               // a page was wanted that can still come
+  bool at_limit = false;                              // CutLimits::max_nodes kept quadnodes coarse
+  double left_over_error_px = 0;                      // largest error left by visible quadnodes that are not `finest`
+  std::array<int, kMaxImageLayers> of_step_before{};  // images of the step before that are shown, of each layer
 };
 
-// terrain: the data type of terrain pages. Images are chosen for view.image_layers.
+// terrain: the data type of terrain pages. Images are chosen for view.image_layers, whose types are those of the steps
+// that are to be shown; before: of each layer the step before, or the same type.
 Cut SelectCut(const ViewParameters& view, const ViewMatrices& matrices, const LayerTable& layers, DataType terrain,
-              const CutLimits& limits, PageAccess& pages);
+              const CutLimits& limits, PageAccess& pages, std::span<const DataType> before = {});
 
 }  // namespace belvedere

@@ -1,5 +1,5 @@
-// Image fade: when another image is laid on a quadnode, finer or coarser, it does not appear at once: it is blended in
-// over the one before within kFade_s, for the two lowest layers of a view.
+// Image fade: when another image is laid on a quadnode, finer or coarser or of another step of its layer, it does not
+// appear at once: it is blended in over the one before within kFade_s, for the two lowest layers of a view.
 //
 // What was there before is the image that the list before had on the quadnode, or the part of it that the quadnode
 // covers of an ancestor's. While one image is still being blended in, the next one waits. Where four quadnodes give way
@@ -25,6 +25,8 @@ class ImageFade {
 
   // When all that the last list shows is blended in, clock seconds.
   double until_s() const { return until_s_; }
+  // Whether an image of the last list waits for the one before it: another list has to be made.
+  bool waits() const { return waits_; }
 
  private:
   struct Shown {
@@ -32,11 +34,12 @@ class ImageFade {
     std::array<ImageUse, kFadingLayers> from;
     std::array<double, kFadingLayers> until_s{};
   };
-  void Continue(const Shown& before, size_t layer, DataType type, Quadcode before_node, double now_s, CutNode& node,
-                Shown& shown, PageAccess& pages);
+  void Continue(const Shown& before, size_t layer, Quadcode before_node, double now_s, CutNode& node, Shown& shown,
+                PageAccess& pages);
 
   std::unordered_map<Quadcode, Shown> shown_, before_;
   double until_s_ = 0;
+  bool waits_ = false;
 };
 
 }  // namespace belvedere

@@ -35,7 +35,7 @@ std::optional<int> ListPages::Slot(const PageKey& key) {
 bool ListPages::Want(const PageKey& key, float priority) {
   Known& known = Look(key);
   if (known.wanted) return true;
-  if (!HasRoomFor(key)) {
+  if (!key.node.is_root() && !HasRoomFor(key)) {
     at_limit_ = true;
     return false;
   }

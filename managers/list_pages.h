@@ -13,7 +13,7 @@
 namespace belvedere {
 
 // How many images a list may use: what it asks for beyond that would find no place on the GPU and be waited for in
-// vain.
+// vain. Roots may always come, for without them the ground is bare.
 struct ImageLimits {
   int colour = 1 << 16;
   int overlay = 1 << 16;

@@ -7,6 +7,7 @@
 #include "managers/image_fade.h"
 #include "managers/list_pages.h"
 #include "managers/paced_thread.h"
+#include "managers/step_change.h"
 #include "managers/surface_mesh.h"
 #include "runtime/base/status.h"
 #include "runtime/base/trace.h"
@@ -48,9 +49,9 @@ class TerrainManager::Worker {
 
   void Step() {
     const std::shared_ptr<const ViewParameters> view = channel_->parameters.Get();
-    if (view->number == 0 || IsUpToDate(*view)) return;
-    const TraceSpan span("terrain.list");
     const double now_s = clock_.NowSeconds();
+    if (view->number == 0 || IsUpToDate(*view, now_s)) return;
+    const TraceSpan span("terrain.list");
     DisplayList& list = channel_->terrain_lists.back();
     list.Clear();
     Build(*view, now_s, list);
@@ -64,10 +65,11 @@ class TerrainManager::Worker {
     last_list_s_ = now_s;
   }
 
-  // Nothing would change: the same settled view, with an eye that stands still.
-  bool IsUpToDate(const ViewParameters& view) const {
+  // Nothing would change: the same settled view, with an eye that stands still, and no next step of a layer.
+  bool IsUpToDate(const ViewParameters& view, double now_s) const {
     if (view.frozen && number_ > 0) return true;
-    return view.number == settled_number_ && view.eye_velocity_mps == glm::dvec3(0);
+    return view.number == settled_number_ && view.eye_velocity_mps == glm::dvec3(0) &&
+           !steps_.IsDue(view.image_layers, paging_.layers, view.UtcAt(now_s));
   }
 
   void Build(const ViewParameters& view, double now_s, DisplayList& list) {
@@ -79,15 +81,19 @@ class TerrainManager::Worker {
     ViewParameters held = view;
     held.error_px = bound_.Next(view, *channel_->frame.Get(), number_ + 1);
     list.statistics.held_error_px = held.error_px;
-    ListPages pages(paging_, terrain_, list, image_limits_);
+    ImageLimits images = image_limits_;
+    images.colour -= steps_.images_before();
+    ListPages pages(paging_, terrain_, list, images);
     CutLimits limits;
     const bool is_full = static_cast<double>(paging_.cache.PinnedBytes()) >
                          kPinnedShareOfBudget * static_cast<double>(paging_.cache.budget_bytes());
     if (is_full) {
       limits.max_nodes = std::min(limits.max_nodes, last_nodes_);
     }
-    Cut cut = SelectCut(held, matrices, paging_.layers, terrain_, limits, pages);
     const bool jump = jump_.Next(view, now_s, list.statistics.height_above_ground_m, was_settled_);
+    held.image_layers = steps_.Next(view.image_layers, paging_.layers, view.UtcAt(now_s), now_s, jump);
+    Cut cut = SelectCut(held, matrices, paging_.layers, terrain_, limits, pages, steps_.before());
+    steps_.Shown(cut.of_step_before, now_s);
     fade_.Apply(cut.nodes, view.image_layers, now_s, jump, pages);
     surface_.morph.Begin(now_s, jump);
     list.time_s = now_s;
@@ -111,7 +117,8 @@ class TerrainManager::Worker {
     statistics.pages_waiting = static_cast<uint32_t>(pages.pages_waiting());
     statistics.behind = cut.behind || pages.at_limit();
     statistics.rises_until_s = std::max(mesh.rises_until_s, fade_.until_s());
-    statistics.settled = !cut.waiting && pages.pages_waiting() == 0 && !cut.nodes.empty();
+    statistics.settled =
+        !cut.waiting && pages.pages_waiting() == 0 && !cut.nodes.empty() && !steps_.changing() && !fade_.waits();
     was_settled_ = statistics.settled;
   }
 
@@ -127,6 +134,7 @@ class TerrainManager::Worker {
   bool was_settled_ = false;
   SurfaceState surface_;
   ImageFade fade_;
+  StepChange steps_;
   EyeJump jump_;
   HeldBound bound_;
   double last_list_s_ = 0;

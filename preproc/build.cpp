@@ -156,10 +156,21 @@ class Builder {
     return options.jobs > 0 ? options.jobs : cores;
   }
 
-  void Exclude(const std::string& layer, const SourceSpec& source, const std::string& reason) {
-    if (!excluded_.insert(layer + "\n" + source.written_path).second) return;
+  // A source without a time is in every step of a layer: it is left out of all.
+  static std::string KeyOf(const LayerSpec& layer, const SourceSpec& source) {
+    return (layer.step ? layer.step->layer : layer.name) + "\n" + source.written_path;
+  }
+
+  void Exclude(const LayerSpec& layer, const SourceSpec& source, const std::string& reason) {
+    if (!excluded_.insert(KeyOf(layer, source)).second) return;
     report_.skipped.push_back({source.written_path, reason});
     LogWarning("{}: skipped: {}", source.path, reason);
+  }
+
+  // A step that has lost all sources of its own time is none.
+  static bool IsWorthBuilding(const OpenLayer& layer) {
+    return std::any_of(layer.sources.begin(), layer.sources.end(),
+                       [&](const auto& source) { return !layer.spec.step || source->spec().utc_s; });
   }
 
   Status OpenSources(BlockCache& cache) {
@@ -168,17 +179,17 @@ class Builder {
       OpenLayer layer;
       layer.spec = layer_spec;
       for (const SourceSpec& source_spec : layer_spec.sources) {
-        if (excluded_.contains(layer_spec.name + "\n" + source_spec.written_path)) continue;
+        if (excluded_.contains(KeyOf(layer_spec, source_spec))) continue;
         auto source = RasterSource::Open(source_spec, layer_spec.kind, number++, jobs_, cache);
         if (!source.ok()) {
-          Exclude(layer_spec.name, source_spec, source.message());
+          Exclude(layer_spec, source_spec, source.message());
           continue;
         }
         const Georeference& georeference = (*source)->georeference();
         layer.plan.push_back({georeference.extent(), FinestLevel(georeference.spacing_deg(), layer_spec.kind)});
         layer.sources.push_back(std::move(*source));
       }
-      if (!layer.sources.empty()) layers_.push_back(std::move(layer));
+      if (IsWorthBuilding(layer)) layers_.push_back(std::move(layer));
     }
     if (!layers_.empty()) return {};
     return Status::Error("{}: nothing could be built, since no source could be used; the first was {}: {}", spec_.path,
@@ -217,12 +228,21 @@ class Builder {
       for (const auto& source : layer.sources) {
         const Status failure = source->failure();
         if (!failure.ok()) {
-          Exclude(layer.spec.name, source->spec(), failure.message() + "; get the file again");
+          Exclude(layer.spec, source->spec(), failure.message() + "; get the file again");
         } else if (!source->used() && !source->HasData()) {
-          Exclude(layer.spec.name, source->spec(), "it covers nothing: no pixel is valid; check its nodata and mask");
+          Exclude(layer.spec, source->spec(), "it covers nothing: no pixel is valid; check its nodata and mask");
         }
       }
     }
+  }
+
+  // In any step, of a source that is in several.
+  bool IsSeen(const std::string& key) const {
+    return std::any_of(layers_.begin(), layers_.end(), [&](const OpenLayer& layer) {
+      return std::any_of(layer.sources.begin(), layer.sources.end(), [&](const auto& source) {
+        return source->used() && KeyOf(layer.spec, source->spec()) == key;
+      });
+    });
   }
 
   Status Finish(const Geoid& geoid, DatasetWriter& writer) {
@@ -231,6 +251,7 @@ class Builder {
       LayerRecord record;
       record.name = layer.spec.name;
       record.kind = layer.spec.kind;
+      record.step = layer.spec.step;
       if (layer.spec.kind == LayerKind::kElevation) {
         record.vertical_reference = "WGS 84 ellipsoid; mean sea level lifted by " + geoid.path();
       }
@@ -239,7 +260,9 @@ class Builder {
         record.sources.back().finest_level = layer.plan[i].finest_level;
         report_.bytes_read += layer.sources[i]->bytes_read();
         if (!layer.sources[i]->remark().empty()) Warn(*layer.sources[i], layer.sources[i]->remark());
-        if (!layer.sources[i]->used()) Warn(*layer.sources[i], "nothing of it is seen: later sources cover it all");
+        if (!IsSeen(KeyOf(layer.spec, layer.sources[i]->spec()))) {
+          Warn(*layer.sources[i], "nothing of it is seen: later sources cover it all");
+        }
       }
       records.push_back(std::move(record));
     }
@@ -255,6 +278,10 @@ class Builder {
   }
 
   void Warn(const RasterSource& source, const std::string& reason) {
+    const bool said = std::any_of(report_.warnings.begin(), report_.warnings.end(), [&](const SourceRemark& remark) {
+      return remark.source == source.spec().written_path && remark.reason == reason;
+    });
+    if (said) return;  // of another step
     report_.warnings.push_back({source.spec().written_path, reason});
     LogWarning("{}: {}", source.spec().path, reason);
   }

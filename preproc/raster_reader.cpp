@@ -89,6 +89,7 @@ Status RasterReader::InspectColours() {
     if (dataset.GetRasterBand(i)->GetColorInterpretation() == GCI_AlphaBand) alpha_band_ = i;
   }
   const int colours = bands - (alpha_band_ != 0 ? 1 : 0);
+  if (colours == 2) remark_ = "its second band is not said to be alpha and is left out";
   colour_bands_ = colours >= 3 ? std::vector<int>{1, 2, 3} : std::vector<int>{1};
   GDALRasterBand& band = *dataset.GetRasterBand(1);
   if (const GDALColorTable* table = band.GetColorTable(); table != nullptr && colours < 3) {
@@ -107,7 +108,8 @@ Status RasterReader::InspectColours() {
   }
   scale_ = low_high[1] > low_high[0] ? 255.0 / (low_high[1] - low_high[0]) : 1.0;
   offset_ = -low_high[0] * scale_;
-  remark_ = fmt::format("its values are not 8-bit; {} to {} was stretched to 0 to 255", low_high[0], low_high[1]);
+  if (!remark_.empty()) remark_ += "; ";
+  remark_ += fmt::format("its values are not 8-bit; {} to {} was stretched to 0 to 255", low_high[0], low_high[1]);
   return {};
 }
 
@@ -214,12 +216,21 @@ Status RasterReader::ReadColours(GDALDataset& dataset, const std::array<int, 4>&
     }
   }
   if (alpha_band_ == 0) return {};
-  std::vector<uint8_t> alpha(pixels);
-  if (dataset.GetRasterBand(alpha_band_)
-          ->RasterIO(GF_Read, x, y, width, height, alpha.data(), width, height, GDT_Byte, 0, 0, nullptr) != CE_None) {
+  return ReadAlpha(dataset, window, out);
+}
+
+Status RasterReader::ReadAlpha(GDALDataset& dataset, const std::array<int, 4>& window, Block& out) const {
+  const auto [x, y, width, height] = window;
+  GDALRasterBand& band = *dataset.GetRasterBand(alpha_band_);
+  const float scale = band.GetRasterDataType() == GDT_UInt16 ? 255.0F / 65535.0F : 1.0F;
+  std::vector<float> alpha(out.coverage.size());
+  if (band.RasterIO(GF_Read, x, y, width, height, alpha.data(), width, height, GDT_Float32, 0, 0, nullptr) != CE_None) {
     return Status::Error("it is truncated or damaged: {}", LastGdalError());
   }
-  for (size_t i = 0; i < pixels; ++i) out.coverage[i] = std::min(out.coverage[i], alpha[i]);
+  for (size_t i = 0; i < alpha.size(); ++i) {
+    const auto share = static_cast<uint8_t>(std::clamp(alpha[i] * scale, 0.0F, 255.0F) + 0.5F);
+    out.coverage[i] = std::min(out.coverage[i], share);
+  }
   return {};
 }
 

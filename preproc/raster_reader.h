@@ -51,6 +51,7 @@ class RasterReader {
   void Return(DatasetHandle handle) EXCLUDES_LOCK(mutex_);
   Status ReadHeights(GDALDataset& dataset, const std::array<int, 4>& window, Block& out, int64_t& bytes) const;
   Status ReadColours(GDALDataset& dataset, const std::array<int, 4>& window, Block& out, int64_t& bytes) const;
+  Status ReadAlpha(GDALDataset& dataset, const std::array<int, 4>& window, Block& out) const;
   Status ReadMask(GDALDataset& dataset, const std::array<int, 4>& window, Block& out) const;
 
   const SourceSpec spec_;

@@ -112,6 +112,7 @@ SourceRecord RasterSource::Record() const {
   record.crs = georeference_->crs_name();
   record.extent = georeference_->extent();
   record.nodata = reader_->nodata();
+  record.utc_s = spec_.utc_s;
   if (kind_ == LayerKind::kElevation) {
     record.datum = spec_.datum == VerticalDatum::kEgm96       ? "egm96"
                    : spec_.datum == VerticalDatum::kEllipsoid ? "ellipsoid"

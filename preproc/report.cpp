@@ -1,5 +1,7 @@
 #include "preproc/report.h"
 
+#include "runtime/base/iso_time.h"
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -23,14 +25,27 @@ json SourceJson(const SourceRecord& source) {
                {source.extent.west_deg, source.extent.south_deg, source.extent.east_deg, source.extent.north_deg}}};
   if (source.nodata) out["nodata"] = *source.nodata;
   if (!source.datum.empty()) out["datum"] = source.datum;
+  if (source.utc_s) out["time"] = FormatIsoTime(*source.utc_s);
   return out;
 }
 
 json LayerJson(const LayerRecord& layer) {
-  return {{"name", layer.name},
-          {"kind", LayerKindName(layer.kind)},
-          {"levels", layer.max_level + 1},
-          {"pages", layer.pages}};
+  json out = {{"name", layer.name},
+              {"kind", LayerKindName(layer.kind)},
+              {"levels", layer.max_level + 1},
+              {"pages", layer.pages}};
+  if (layer.step) {
+    out["step_of"] = layer.step->layer;
+    out["time"] = FormatIsoTime(layer.step->utc_s);
+    if (layer.step->repeats == Repeats::kEveryYear) out["repeats"] = "year";
+  }
+  return out;
+}
+
+// "from 2004-01-01T00:00:00Z on, every year"
+std::string SpanOf(const StepOf& step) {
+  return fmt::format("step of layer {}, from {} on{}", step.layer, FormatIsoTime(step.utc_s),
+                     step.repeats == Repeats::kEveryYear ? ", every year" : "");
 }
 
 // Posts on the east and north border are those of the neighbours there, where these exist.
@@ -112,14 +127,16 @@ std::string DescribeDataset(const Dataset& dataset) {
   for (const LayerRecord& layer : dataset.layers()) {
     text += fmt::format("layer {} ({}): {} pages, {:.1f} MB, levels 0 to {}\n", layer.name, LayerKindName(layer.kind),
                         layer.pages, static_cast<double>(layer.bytes) / 1e6, layer.max_level);
+    if (layer.step) text += fmt::format("  {}\n", SpanOf(*layer.step));
     if (!layer.vertical_reference.empty()) text += fmt::format("  heights: {}\n", layer.vertical_reference);
     text += "  pages by level:";
     for (const int64_t pages : layer.pages_per_level) text += fmt::format(" {}", pages);
     text += "\n";
     for (const SourceRecord& source : layer.sources) {
-      text += fmt::format("  source {}: {}, level {}, west {:.6g} south {:.6g} east {:.6g} north {:.6g}\n", source.path,
-                          source.crs, source.finest_level, source.extent.west_deg, source.extent.south_deg,
-                          source.extent.east_deg, source.extent.north_deg);
+      text += fmt::format("  source {}: {}, level {}, west {:.6g} south {:.6g} east {:.6g} north {:.6g}{}\n",
+                          source.path, source.crs, source.finest_level, source.extent.west_deg, source.extent.south_deg,
+                          source.extent.east_deg, source.extent.north_deg,
+                          source.utc_s ? ", time " + FormatIsoTime(*source.utc_s) : "");
     }
   }
   return text;

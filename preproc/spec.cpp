@@ -1,5 +1,7 @@
 #include "preproc/spec.h"
 
+#include "runtime/base/iso_time.h"
+
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -48,16 +50,21 @@ class Parser {
     if (layers == nullptr || layers->empty()) {
       return Status::Error("{}: no layer: write [[layer]] with a name, a kind and its sources", path_);
     }
+    std::set<std::string> names;
     for (const toml::node& node : *layers) {
-      auto layer = ParseLayer(node);
-      if (!layer.ok()) return layer.status();
-      if (std::any_of(spec.layers.begin(), spec.layers.end(), [&](const auto& l) { return l.name == layer->name; })) {
-        return Error(node, "two layers are named \"{}\"", layer->name);
+      auto steps = ParseLayer(node);
+      if (!steps.ok()) return steps.status();
+      const LayerSpec& first = steps->front();
+      bool taken = first.step && !names.insert(first.step->layer).second;
+      for (LayerSpec& step : *steps) {
+        taken |= !names.insert(step.name).second;
+        if (taken) return Error(node, "two layers are named \"{}\"", step.step ? step.step->layer : step.name);
+        spec.layers.push_back(std::move(step));
       }
-      spec.layers.push_back(std::move(*layer));
     }
     if (spec.layers.size() > static_cast<size_t>(kMaxDatasetLayers)) {
-      return Status::Error("{}: {} layers, at most {} fit a dataset", path_, spec.layers.size(), kMaxDatasetLayers);
+      return Status::Error("{}: {} layers, each time of a layer counted, at most {} fit a dataset", path_,
+                           spec.layers.size(), kMaxDatasetLayers);
     }
     return spec;
   }
@@ -96,10 +103,11 @@ class Parser {
     return node.value<double>().value_or(0);
   }
 
-  Result<LayerSpec> ParseLayer(const toml::node& node) const {
+  // A layer, or all its steps.
+  Result<std::vector<LayerSpec>> ParseLayer(const toml::node& node) const {
     const toml::table* table = node.as_table();
     if (table == nullptr) return Error(node, "\"layer\" must be a table: write [[layer]]");
-    if (Status status = CheckKeys(*table, {"name", "kind", "source"}); !status.ok()) return status;
+    if (Status status = CheckKeys(*table, {"name", "kind", "source", "repeats"}); !status.ok()) return status;
     LayerSpec layer;
     auto name = String(*table, "name");
     if (!name.ok()) return name.status();
@@ -120,13 +128,34 @@ class Parser {
       if (!source.ok()) return source.status();
       layer.sources.push_back(std::move(*source));
     }
-    return layer;
+    const auto repeats = ParseRepeats(*table, layer);
+    if (!repeats.ok()) return repeats.status();
+    return StepsOf(std::move(layer), *repeats);
+  }
+
+  Result<Repeats> ParseRepeats(const toml::table& table, const LayerSpec& layer) const {
+    const toml::node* node = table.get("repeats");
+    if (node == nullptr) return Repeats::kNever;
+    const auto repeats = String(table, "repeats");
+    if (!repeats.ok()) return repeats.status();
+    if (*repeats != "year") return Error(*node, "\"repeats\" must be \"year\", here it is \"{}\"", *repeats);
+    std::optional<double> first_s;
+    for (const SourceSpec& source : layer.sources) {
+      if (!source.utc_s) continue;
+      if (!first_s) first_s = source.utc_s;
+      if (YearOf(*first_s) == YearOf(*source.utc_s)) continue;
+      return Error(*node, "what repeats every year has all its times in one year, here {} and {}",
+                   FormatIsoTime(*first_s), FormatIsoTime(*source.utc_s));
+    }
+    if (!first_s) return Error(*node, "\"repeats\" needs sources with a \"time\", layer \"{}\" has none", layer.name);
+    return Repeats::kEveryYear;
   }
 
   Result<SourceSpec> ParseSource(const toml::node& node, LayerKind kind) const {
     const toml::table* table = node.as_table();
     if (table == nullptr) return Error(node, "\"source\" must be a table: write [[layer.source]]");
-    if (Status status = CheckKeys(*table, {"path", "nodata", "crs", "georeference", "unit", "datum", "feather_m"});
+    if (Status status =
+            CheckKeys(*table, {"path", "nodata", "crs", "georeference", "unit", "datum", "feather_m", "time"});
         !status.ok()) {
       return status;
     }
@@ -153,7 +182,22 @@ class Parser {
     }
     if (Status status = ParseGeoreference(*table, source); !status.ok()) return status;
     if (Status status = ParseHeightKeys(*table, kind, source); !status.ok()) return status;
+    if (Status status = ParseTime(*table, kind, source); !status.ok()) return status;
     return source;
+  }
+
+  Status ParseTime(const toml::table& table, LayerKind kind, SourceSpec& source) const {
+    const toml::node* node = table.get("time");
+    if (node == nullptr) return {};
+    if (kind == LayerKind::kElevation) return Error(*node, "\"time\" means nothing for elevation");
+    const auto text = String(table, "time");
+    if (!text.ok()) return text.status();
+    source.utc_s = ParseIsoTime(*text);
+    if (!source.utc_s) {
+      return Error(*node, "\"time\" must be a time like \"2004-01-01T00:00:00Z\", here it is \"{}\"", *text);
+    }
+    source.utc_s = std::floor(*source.utc_s);
+    return {};
   }
 
   Status ParseGeoreference(const toml::table& table, SourceSpec& source) const {
@@ -217,6 +261,28 @@ class Parser {
 };
 
 }  // namespace
+
+std::vector<LayerSpec> StepsOf(LayerSpec layer, Repeats repeats) {
+  std::set<double> times;
+  for (const SourceSpec& source : layer.sources) {
+    if (source.utc_s) times.insert(*source.utc_s);
+  }
+  std::vector<LayerSpec> steps;
+  if (times.empty()) {
+    steps.push_back(std::move(layer));
+    return steps;
+  }
+  for (const double utc_s : times) {
+    LayerSpec step{layer.name + "@" + FormatIsoTime(utc_s), layer.kind, {}, StepOf{layer.name, utc_s, repeats}};
+    for (const bool timed : {false, true}) {
+      for (const SourceSpec& source : layer.sources) {
+        if (timed ? source.utc_s == utc_s : !source.utc_s) step.sources.push_back(source);
+      }
+    }
+    steps.push_back(std::move(step));
+  }
+  return steps;
+}
 
 Result<BuildSpec> ParseSpec(std::string_view text, const std::string& path) {
   try {

@@ -3,6 +3,9 @@
 // Sources of a layer are in the order of the file: a later one wins where it has data. Every mistake in the file is one
 // line that names the file, the line, the key and, for a key nobody knows, the nearest that is known.
 //
+// An imagery layer some of whose sources have a time changes with the time: it becomes one layer for each of the times,
+// its step, named NAME@TIME. A step is made of the sources without a time, and over them those of its own time.
+//
 // Units: degrees; feather in metres; datum_m in metres above the ellipsoid.
 // Threads: values.
 #pragma once
@@ -32,13 +35,18 @@ struct SourceSpec {
   VerticalDatum datum = VerticalDatum::kEgm96;
   double datum_m = 0;  // for kOffset: height of the source's zero above the ellipsoid
   double feather_m = 0;
+  std::optional<double> utc_s;  // imagery: when it was so; to the second
 };
 
 struct LayerSpec {
   std::string name;
   LayerKind kind = LayerKind::kElevation;
   std::vector<SourceSpec> sources;
+  std::optional<StepOf> step;
 };
+
+// One layer as the spec has it: itself, or its steps, the earliest first.
+std::vector<LayerSpec> StepsOf(LayerSpec layer, Repeats repeats);
 
 struct BuildSpec {
   std::string path;

@@ -19,7 +19,8 @@ namespace belvedere {
 namespace {
 
 constexpr double kHudRefresh_s = 0.25;
-constexpr double kLongestUnchanged_s = 1.0;  // the sun goes on, and a window may have been uncovered
+constexpr double kRateOfASunThatMoves = 60.0;  // a quarter of a degree a second
+constexpr double kLongestUnchanged_s = 1.0;    // the sun goes on, and a window may have been uncovered
 constexpr double kLeastOverGround_m = 1.0;
 
 // Where the list draws its ground over the eye, since pages have not come, the picture is taken from just above that.
@@ -142,6 +143,7 @@ bool Renderer::HasToBeDrawn(const View& view) const {
   const bool moves = view.parameters->eye_velocity_mps != glm::dvec3(0) ||
                      !view.channel->object_lists.front().instances.empty() ||
                      view.drawn_s < view.channel->terrain_lists.front().statistics.rises_until_s ||
+                     std::abs(view.parameters->time_rate) > kRateOfASunThatMoves ||
                      view.uploads_pending != view.report.uploads_pending;
   return view.has_news || moves || view.notices_number != notices_number_ ||
          start_s_ - view.drawn_s >= kLongestUnchanged_s;
@@ -214,7 +216,7 @@ Renderer::Drawn Renderer::DrawView(View& view, const ViewParameters& parameters,
   const DisplayList& objects = view.channel->object_lists.front();
   const double since_list_s = clock_now_s - terrain.time_s;
   view.matrices = MatricesOver(terrain, parameters, now_s, since_list_s);
-  const glm::dvec3 sun_ecef = SunDirectionEcef(parameters.utc_s + (now_s - parameters.time_s));
+  const glm::dvec3 sun_ecef = SunDirectionEcef(parameters.UtcAt(now_s));
   const ViewBlock block = MakeViewBlock(parameters, view.matrices, sun_ecef, since_list_s);
   glNamedBufferData(view_block_.get(), sizeof(ViewBlock), &block, GL_STREAM_DRAW);
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, view_block_.get());

@@ -2,6 +2,7 @@
 
 #include "runtime/base/status.h"
 
+#include <algorithm>
 #include <array>
 
 namespace belvedere {
@@ -53,6 +54,36 @@ void HalveRgba8(const uint8_t* from, uint8_t* to, size_t to_side) {
   }
 }
 
+// The mean colour of the eight texels around one, of those that have any; transparent still.
+Texel MeanAround(const uint8_t* texels, size_t side, size_t column, size_t row) {
+  std::array<int, 3> sums{};
+  int count = 0;
+  for (size_t y = row > 0 ? row - 1 : 0; y <= std::min(row + 1, side - 1); ++y) {
+    for (size_t x = column > 0 ? column - 1 : 0; x <= std::min(column + 1, side - 1); ++x) {
+      const uint8_t* texel = texels + (y * side + x) * sizeof(Texel);
+      if (texel[3] == 0) continue;
+      for (size_t channel = 0; channel < sums.size(); ++channel) sums[channel] += texel[channel];
+      ++count;
+    }
+  }
+  Texel mean{};
+  for (size_t channel = 0; channel < sums.size() && count > 0; ++channel) {
+    mean[channel] = static_cast<uint8_t>((sums[channel] + count / 2) / count);
+  }
+  return mean;
+}
+
+void ColourRimsOf(uint8_t* texels, size_t side) {
+  for (size_t row = 0; row < side; ++row) {
+    for (size_t column = 0; column < side; ++column) {
+      uint8_t* texel = texels + (row * side + column) * sizeof(Texel);
+      if (texel[3] != 0) continue;
+      const Texel mean = MeanAround(texels, side, column, row);
+      std::copy(mean.begin(), mean.end(), texel);
+    }
+  }
+}
+
 }  // namespace
 
 void FillMipLevels(ImagePage& page) {
@@ -66,6 +97,14 @@ void FillMipLevels(ImagePage& page) {
     } else {
       HalveRgba8(from, to, side);
     }
+  }
+}
+
+void ColourRims(ImagePage& page) {
+  BELVEDERE_CHECK(page.format == ImageFormat::kRGBA8);
+  for (int level = 0; level < kImageMipLevels; ++level) {
+    ColourRimsOf(page.texels.data() + ImagePage::MipOffset(level, page.format),
+                 static_cast<size_t>(kImageSide >> level));
   }
 }
 

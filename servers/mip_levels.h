@@ -14,4 +14,9 @@ namespace belvedere {
 // REQUIRES: texels has the size of all levels.
 void FillMipLevels(ImagePage& page);
 
+// The GPU filters straight alpha, colour apart from alpha. So at every level a transparent texel beside others that are
+// not takes on their mean colour, transparent still; else the rim of an overlay would be drawn half as bright.
+// REQUIRES: kRGBA8, and the levels are filled.
+void ColourRims(ImagePage& page);
+
 }  // namespace belvedere

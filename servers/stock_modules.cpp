@@ -13,10 +13,20 @@
 namespace belvedere {
 namespace {
 
+// The first of a layer's steps in the dataset: it stands for all of them.
+bool IsFirstStep(const Dataset& dataset, const LayerRecord& record) {
+  if (!record.step) return false;
+  const auto first = std::find_if(dataset.layers().begin(), dataset.layers().end(), [&](const LayerRecord& other) {
+    return other.step && other.step->layer == record.step->layer;
+  });
+  return &*first == &record;
+}
+
 // A layer of the dataset, without the function that reads its pages.
 ReadModule LayerOf(const Dataset& dataset, int layer, const LayerRecord& record, PageKind kind) {
   ReadModule module;
-  module.layer = record.name;
+  module.layer = IsFirstStep(dataset, record) ? record.step->layer : record.name;
+  module.step = record.step;
   module.kind = kind;
   module.max_level = record.max_level;
   module.exists = [&dataset, layer](Quadcode node) { return dataset.Exists(layer, node); };
@@ -39,6 +49,7 @@ ReadModule ImageryModule(const Dataset& dataset, int layer, const LayerRecord& r
     Result<std::shared_ptr<ImagePage>> page = dataset.ReadImage(layer, node);
     if (!page.ok()) return page.status();
     FillMipLevels(**page);
+    ColourRims(**page);
     return std::unique_ptr<Page>(std::make_unique<ImagePage>(std::move(**page)));
   };
   return module;

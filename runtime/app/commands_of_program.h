@@ -40,6 +40,7 @@ struct TourOptions {
   double upload_ms = 4;
   bool hud = true;
   std::optional<double> utc_s;
+  double time_rate = 1;
   std::string report, frame_csv, trace;
 };
 int FlyTour(const TourOptions& options);

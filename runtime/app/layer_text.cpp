@@ -21,8 +21,9 @@ constexpr std::array<std::pair<std::string_view, LayerRole>, 5> kRoles{{{"colour
 constexpr std::string_view kUsage =
     "settings are off, on, opacity=0..1, gamma=0.1..10, multiplier=0..100, role=colour|grey|multiply|night|water";
 
+// That a view may name; of a layer's steps only the one that stands for all.
 bool IsImage(const Layer& layer) {
-  return layer.kind == PageKind::kColour || layer.kind == PageKind::kOverlay;
+  return (layer.kind == PageKind::kColour || layer.kind == PageKind::kOverlay) && layer.is_whole();
 }
 
 std::optional<float> NumberWithin(std::string_view text, double least, double most) {

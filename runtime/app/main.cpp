@@ -1,7 +1,7 @@
 // belvedere: the run-time system. Reads the command line and calls the command.
 
 #include "runtime/app/commands_of_program.h"
-#include "runtime/app/iso_time.h"
+#include "runtime/base/iso_time.h"
 #include "runtime/base/log.h"
 
 #include <CLI/CLI.hpp>
@@ -93,8 +93,14 @@ void AddTour(CLI::App& program, TourOptions& options, Texts& texts) {
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
   command->add_flag("!--no-hud", options.hud, "without the heads-up display");
-  command->add_option("--time", texts.time, "time of the sun (default: equinox noon at the path's end)")
+  command
+      ->add_option("--time", texts.time,
+                   "simulated time at the start: of the sun (default: equinox noon at the path's end), "
+                   "and of layers that change with it")
       ->check(TimeText());
+  command->add_option("--time-rate", options.time_rate, "seconds of simulated time a second")
+      ->check(CLI::Range(-kFastestTime, kFastestTime))
+      ->capture_default_str();
   command->add_option("--report", options.report, "report file (JSON)")->required();
   command->add_option("--frame-csv", options.frame_csv, "a line a frame (CSV)");
   command->add_option("--trace", options.trace, "write a trace of what each thread did");
@@ -121,7 +127,11 @@ void AddSnapshot(CLI::App& program, SnapshotOptions& options, Texts& texts) {
   command->add_option("--exaggeration", options.exaggeration, "of heights")
       ->check(CLI::Range(0.1, 100.0))
       ->capture_default_str();
-  command->add_option("--time", texts.time, "time of the sun (default: equinox noon at the place)")->check(TimeText());
+  command
+      ->add_option("--time", texts.time,
+                   "simulated time: of the sun (default: equinox noon at the place), and of layers that "
+                   "change with it")
+      ->check(TimeText());
   command->add_option("--out", options.out, "picture (PNG)")->required();
   command->add_option("--depth", options.depth, "distances along the view axis (EXR)");
   command->add_flag("--json", options.json, "print what was drawn");

@@ -31,6 +31,9 @@ std::optional<PictureSize> ParseSize(std::string_view text);
 // UTC seconds of the local solar noon at the March equinox of 2026: when no time is asked for, every place is lit.
 double EquinoxNoonAt(double longitude_deg);
 
+// Simulated time may run so much faster than the clock, or back: some three years a second.
+inline constexpr double kFastestTime = 1e8;
+
 // Writes text beside its place and moves it into it.
 Status WriteText(const std::string& path, std::string_view text);
 

@@ -25,6 +25,7 @@ ViewParameters ParametersOf(const SnapshotOptions& options, std::vector<LayerUse
   view.number = 1;
   view.time_s = now_s;
   view.utc_s = options.utc_s.value_or(EquinoxNoonAt(options.position.longitude_deg));
+  view.time_rate = 0;  // however long the view takes to settle
   view.eye_ecef = pose.eye_ecef();
   view.ecef_from_camera = pose.ecef_from_camera();
   view.vertical_fov = Radians::FromDegrees(options.vfov_deg);

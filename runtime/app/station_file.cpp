@@ -1,8 +1,9 @@
 #include "runtime/app/station_file.h"
 
-#include "runtime/app/iso_time.h"
 #include "runtime/app/key_map.h"
+#include "runtime/app/program.h"
 #include "runtime/app/settings.h"
+#include "runtime/base/iso_time.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -135,6 +136,7 @@ void ReadKeys(SettingsTable& table, StationSpec& station) {
 }
 
 void ReadTime(SettingsTable& root, StationSpec& station) {
+  Assign(root.Number("time_rate", -kFastestTime, kFastestTime), station.time_rate);
   const auto text = root.String("time");
   if (!text || *text == "now") return;
   station.utc_s = ParseIsoTime(*text);

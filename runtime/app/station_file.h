@@ -59,6 +59,7 @@ struct StationSpec {
   double exaggeration = 1;
   double frame_ms = 0;          // the bound on the error is loosened where frames take longer; 0: never
   std::optional<double> utc_s;  // simulated time at the start; nullopt: the real time
+  double time_rate = 1;         // seconds of simulated time a second; 0: it stands still
   RenderOptions render;
   FeedSpec feed;
   std::vector<WindowSpec> windows;

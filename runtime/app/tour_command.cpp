@@ -161,7 +161,8 @@ ViewParameters Tour::ParametersAt(int view, double elapsed_s, bool frozen) {
   parameters.view = IdOf(view);
   parameters.number = ++number_;
   parameters.time_s = clock_.NowSeconds();
-  parameters.utc_s = utc_s_ + elapsed_s;
+  parameters.utc_s = utc_s_ + options_.time_rate * elapsed_s;
+  parameters.time_rate = frozen ? 0 : options_.time_rate;
   parameters.eye_ecef = pose.eye_ecef();
   if (!frozen) parameters.eye_velocity_mps = path_.VelocityAt(own_s);
   parameters.ecef_from_camera = pose.ecef_from_camera();

@@ -82,6 +82,7 @@ ViewParameters UiThread::ParametersOf(const View& view, double now_s) {
   ViewParameters parameters = view.pilot->Parameters(++number_, now_s, UtcAt(now_s));
   parameters.exaggeration = spec_.exaggeration;
   parameters.target_frame_ms = spec_.frame_ms;
+  parameters.time_rate = spec_.time_rate;
   return parameters;
 }
 

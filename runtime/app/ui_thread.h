@@ -55,7 +55,7 @@ class UiThread {
   void ShowNotices(double now_s);
   Status TakePictures(const std::string& moment);
   ViewParameters ParametersOf(const View& view, double now_s);
-  double UtcAt(double now_s) const { return utc_at_start_s_ + now_s - start_s_; }
+  double UtcAt(double now_s) const { return utc_at_start_s_ + spec_.time_rate * (now_s - start_s_); }
 
   const StationSpec& spec_;
   const UiOptions options_;

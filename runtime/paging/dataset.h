@@ -12,6 +12,7 @@
 #pragma once
 
 #include "runtime/base/status.h"
+#include "runtime/paging/layer_steps.h"
 #include "runtime/paging/page.h"
 
 #include <cstdint>
@@ -39,6 +40,7 @@ struct SourceRecord {
   std::optional<double> nodata;
   std::string datum;  // elevation: "egm96", "ellipsoid" or an offset in metres; imagery: empty
   int finest_level = 0;
+  std::optional<double> utc_s{};  // when it was so, if the spec said
 };
 
 struct LayerRecord {
@@ -50,6 +52,7 @@ struct LayerRecord {
   int64_t bytes = 0;               // stored bytes of all its pages
   std::string vertical_reference;  // elevation: "WGS 84 ellipsoid", and the geoid that the sources were lifted by
   std::vector<SourceRecord> sources;
+  std::optional<StepOf> step{};  // imagery: it is one step of a layer that changes with the time
 };
 
 class Dataset {

@@ -1,5 +1,7 @@
 #include "runtime/paging/dataset_store.h"
 
+#include "runtime/base/iso_time.h"
+
 #include <nlohmann/json.hpp>
 
 namespace belvedere::store {
@@ -16,7 +18,30 @@ json SourceToJson(const SourceRecord& source) {
               {"datum", source.datum},
               {"finest_level", source.finest_level}};
   if (source.nodata) out["nodata"] = *source.nodata;
+  if (source.utc_s) out["time"] = FormatIsoTime(*source.utc_s);
   return out;
+}
+
+double TimeFromJson(const json& in) {
+  const auto text = in.get<std::string>();
+  const std::optional<double> utc_s = ParseIsoTime(text);
+  if (!utc_s) throw json::other_error::create(501, "\"" + text + "\" is no time", nullptr);
+  return *utc_s;
+}
+
+json StepToJson(const StepOf& step) {
+  json out = {{"layer", step.layer}, {"time", FormatIsoTime(step.utc_s)}};
+  if (step.repeats == Repeats::kEveryYear) out["repeats"] = "year";
+  return out;
+}
+
+StepOf StepFromJson(const json& in) {
+  StepOf step{in.at("layer").get<std::string>(), TimeFromJson(in.at("time")), Repeats::kNever};
+  if (!in.contains("repeats")) return step;
+  const auto repeats = in.at("repeats").get<std::string>();
+  if (repeats != "year") throw json::other_error::create(501, "a layer that repeats every " + repeats, nullptr);
+  step.repeats = Repeats::kEveryYear;
+  return step;
 }
 
 SourceRecord SourceFromJson(const json& in) {
@@ -29,20 +54,23 @@ SourceRecord SourceFromJson(const json& in) {
   if (!in.at("nodata").is_null()) source.nodata = in.at("nodata").get<double>();
   source.datum = in.at("datum").get<std::string>();
   source.finest_level = in.at("finest_level").get<int>();
+  if (in.contains("time")) source.utc_s = TimeFromJson(in.at("time"));
   return source;
 }
 
 json LayerToJson(const LayerRecord& layer) {
   json sources = json::array();
   for (const auto& source : layer.sources) sources.push_back(SourceToJson(source));
-  return {{"name", layer.name},
-          {"kind", LayerKindName(layer.kind)},
-          {"max_level", layer.max_level},
-          {"pages_per_level", layer.pages_per_level},
-          {"pages", layer.pages},
-          {"bytes", layer.bytes},
-          {"vertical_reference", layer.vertical_reference},
-          {"sources", sources}};
+  json out = {{"name", layer.name},
+              {"kind", LayerKindName(layer.kind)},
+              {"max_level", layer.max_level},
+              {"pages_per_level", layer.pages_per_level},
+              {"pages", layer.pages},
+              {"bytes", layer.bytes},
+              {"vertical_reference", layer.vertical_reference},
+              {"sources", sources}};
+  if (layer.step) out["step_of"] = StepToJson(*layer.step);
+  return out;
 }
 
 LayerRecord LayerFromJson(const json& in) {
@@ -58,6 +86,7 @@ LayerRecord LayerFromJson(const json& in) {
   layer.bytes = in.at("bytes").get<int64_t>();
   layer.vertical_reference = in.at("vertical_reference").get<std::string>();
   for (const auto& source : in.at("sources")) layer.sources.push_back(SourceFromJson(source));
+  if (in.contains("step_of") && layer.kind == LayerKind::kImagery) layer.step = StepFromJson(in.at("step_of"));
   return layer;
 }
 

@@ -9,9 +9,28 @@ namespace belvedere {
 
 DataType LayerTable::Add(Layer layer) {
   BELVEDERE_CHECK(Find(layer.name) == nullptr);
-  layer.type = static_cast<DataType>(layers_.size());
+  const auto type = static_cast<DataType>(layers_.size());
+  layer.type = type;
+  layer.steps.clear();
   layers_.push_back(std::move(layer));
-  return layers_.back().type;
+  if (layers_.back().step) AddStep(*layers_.back().step, type);
+  return type;
+}
+
+void LayerTable::AddStep(const StepOf& step, DataType type) {
+  const Layer* whole = Find(step.layer);
+  BELVEDERE_CHECK(whole != nullptr && whole->step);
+  std::vector<LayerStep>& steps = layers_[whole->type].steps;
+  const auto later = std::find_if(steps.begin(), steps.end(), [&](const LayerStep& other) {
+    return IsEarlier(step.utc_s, other.utc_s, whole->step->repeats);
+  });
+  steps.insert(later, {step.utc_s, type});
+}
+
+DataType LayerTable::TypeAt(DataType type, double utc_s) const {
+  const Layer& layer = at(type);
+  if (layer.steps.empty()) return type;
+  return layer.steps[StepAt(layer.steps, layer.step->repeats, utc_s)].type;
 }
 
 const Layer* LayerTable::Find(std::string_view name) const {

@@ -29,6 +29,7 @@
 #include "runtime/base/view_id.h"
 #include "runtime/earth/frame.h"
 #include "runtime/earth/visibility.h"
+#include "runtime/paging/page.h"
 #include "runtime/paging/shared_cache.h"
 
 #include <glm/mat3x3.hpp>
@@ -60,7 +61,8 @@ struct ImageUse {
   int32_t slot = -1;  // -1: no image, draw as neutral
   float offset_u = 0, offset_v = 0;
   float scale = 1;
-  Quadcode source;  // of the page
+  Quadcode source;    // of the page
+  DataType type = 0;  // of the page
 };
 
 struct ListVertex {

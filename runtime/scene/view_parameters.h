@@ -26,7 +26,7 @@ namespace belvedere {
 
 // One image layer as a view shows it: a texel c becomes multiplier * c^gamma, and opacity says how much of it counts.
 struct LayerUse {
-  DataType type = 0;
+  DataType type = 0;  // of a layer with steps, that of the whole layer
   LayerRole role = LayerRole::kColour;
   float opacity = 1, gamma = 1, multiplier = 1;
   bool on = true;
@@ -42,9 +42,10 @@ enum class Projection : uint8_t { kPerspective, kOrthographic };
 
 struct ViewParameters {
   ViewId view = 0;
-  uint64_t number = 0;  // grows with every published value
-  double time_s = 0;    // clock time at which the eye was there
-  double utc_s = 0;     // simulation time of that moment: where the sun stands
+  uint64_t number = 0;   // grows with every published value
+  double time_s = 0;     // clock time at which the eye was there
+  double utc_s = 0;      // simulation time of that moment: where the sun stands, which step of a layer holds
+  double time_rate = 1;  // seconds of simulation time a second; 0: it stands still
   glm::dvec3 eye_ecef{};
   glm::dvec3 eye_velocity_mps{};
   glm::dmat3 ecef_from_camera{1.0};  // columns right, up, backward
@@ -71,6 +72,7 @@ struct ViewParameters {
   glm::vec3 background{0.0F};  // linear RGB where nothing is drawn (seen with sky off)
 
   glm::dvec3 EyeAt(double clock_time_s) const { return eye_ecef + eye_velocity_mps * (clock_time_s - time_s); }
+  double UtcAt(double clock_time_s) const { return utc_s + time_rate * (clock_time_s - time_s); }
 };
 
 // Matrices and planes of a view at one moment, in double.

@@ -57,5 +57,22 @@ TEST(LayerText, MistakesAreNamed) {
   EXPECT_NE(message({"a", "b", "c", "d", "e", "f", "g"}).find("at most 6"), std::string::npos);
 }
 
+TEST(LayerText, ALayerWithStepsIsOne) {
+  LayerTable table;
+  for (const char* name : {"seasons", "seasons@2004-07-01T00:00:00Z"}) {
+    Layer layer{name, PageKind::kColour, 0, 5, [](Quadcode) { return true; }};
+    layer.step = StepOf{"seasons", static_cast<double>(table.size()), Repeats::kNever};
+    table.Add(std::move(layer));
+  }
+  const auto layers = LayersOf({"seasons:opacity=0.5"}, table);
+  ASSERT_TRUE(layers.ok()) << layers.message();
+  EXPECT_EQ((*layers)[0].use.type, 0);
+  EXPECT_EQ(LayersOf({}, table)->size(), 1U);
+  const auto unknown = LayersOf({"colour"}, table);
+  ASSERT_FALSE(unknown.ok());
+  EXPECT_NE(unknown.message().find("there are seasons"), std::string::npos) << unknown.message();
+  EXPECT_EQ(unknown.message().find("seasons@"), std::string::npos) << unknown.message();
+}
+
 }  // namespace
 }  // namespace belvedere

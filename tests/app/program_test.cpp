@@ -3,6 +3,7 @@
 #include "runtime/app/camera_path.h"
 #include "tests/app/made_dataset.h"
 
+#include <OpenImageIO/imageio.h>
 #include <nlohmann/json.hpp>
 
 #include <sys/wait.h>
@@ -14,9 +15,11 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 namespace belvedere {
 namespace {
@@ -51,6 +54,16 @@ Outcome RunProgram(const std::string& arguments, const std::string& input = "") 
   std::remove(in.c_str());
   std::remove(errors.c_str());
   return outcome;
+}
+
+// Of the picture's texels, all channels.
+double MeanOf(const std::string& path) {
+  const auto input = OIIO::ImageInput::open(path);
+  if (!input) return -1;
+  const OIIO::ImageSpec spec = input->spec();
+  std::vector<uint8_t> read(static_cast<size_t>(spec.width * spec.height * spec.nchannels));
+  EXPECT_TRUE(input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UINT8, read.data()));
+  return std::accumulate(read.begin(), read.end(), 0.0) / static_cast<double>(read.size());
 }
 
 size_t LinesIn(const std::string& text) {
@@ -213,6 +226,26 @@ TEST(ProgramTest, StationFileMistakesExitOneWithTheLine) {
             std::string::npos)
       << outcome.errors;
   std::remove(station.c_str());
+}
+
+TEST(ProgramTest, SnapshotShowsTheStepOfItsTime) {
+  const MadeDataset dataset("seasons", true);
+  const std::string out = TempPath("season.png");
+  const auto snapshot = [&](const std::string& time) {
+    const Outcome outcome =
+        RunProgram("snapshot " + dataset.path() + " --lat 20 --lon 180 --height 3000000 --size 64x64 --time " + time +
+                   " --out " + out);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+    return std::pair{MeanOf(out), TextOf(out)};
+  };
+  const auto winter = snapshot("2026-11-01T00:00:00Z");
+  // While the view settles the time does not go on.
+  const auto summer = snapshot("2026-10-31T23:59:59.9Z");
+  EXPECT_GT(winter.first, summer.first + 40) << "white over green";
+  EXPECT_EQ(winter.second, snapshot("2026-11-01T00:00:00Z").second);
+  EXPECT_EQ(summer.second, snapshot("2026-10-31T23:59:59.9Z").second);
+  EXPECT_NEAR(snapshot("1987-01-31T00:00:00Z").first, winter.first, 25) << "until the 1st of March of the next year";
+  std::remove(out.c_str());
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 #include "runtime/app/station_file.h"
 
-#include "runtime/app/iso_time.h"
 #include "runtime/app/settings.h"
 
 #include <gtest/gtest.h>
@@ -27,6 +26,7 @@ cache_MiB = 256
 exaggeration = 2
 frame_ms = 25
 time = "2026-06-21T19:30:00Z"
+time_rate = 3600
 [feed]
 listen = ["127.0.0.1:3000", "239.1.2.3:3001"]
 exercise = 7
@@ -66,6 +66,7 @@ position = [10, -20]
   EXPECT_EQ(station->exaggeration, 2);
   EXPECT_EQ(station->frame_ms, 25);
   EXPECT_EQ(station->utc_s, 1782070200.0);
+  EXPECT_EQ(station->time_rate, 3600.0);
   EXPECT_EQ(station->feed.listen.size(), 2U);
   EXPECT_EQ(station->feed.exercise, 7);
   EXPECT_EQ(station->render.max_fps, 30);
@@ -151,17 +152,6 @@ TEST(StationFileTest, StationOfTheDemoIsRead) {
 TEST(SettingsTest, NearestWordIsASlipAway) {
   EXPECT_EQ(NearestWord("hieght", {"height", "heading"}), "height");
   EXPECT_EQ(NearestWord("colour", {"lat", "lon"}), "");
-}
-
-TEST(IsoTimeTest, ReadsTimes) {
-  EXPECT_EQ(ParseIsoTime("1970-01-01"), 0.0);
-  EXPECT_EQ(ParseIsoTime("1970-01-02T00:00:01.5Z"), 86401.5);
-  EXPECT_EQ(ParseIsoTime("2026-06-21T19:30:00Z"), 1782070200.0);
-  EXPECT_EQ(ParseIsoTime("2026-06-21 12:30-07:00"), 1782070200.0);
-  for (const char* bad :
-       {"", "today", "2026-13-01", "2026-02-29", "2026-06-21T25:00", "2026-06-21T19:30:00Zx", "2026-6-1"}) {
-    EXPECT_FALSE(ParseIsoTime(bad).has_value()) << bad;
-  }
 }
 
 }  // namespace

@@ -8,12 +8,14 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <vector>
 
 namespace belvedere {
 namespace {
 
 constexpr DataType kTerrain = 0;
 constexpr DataType kImagery = 1;
+constexpr DataType kNextImagery = 2;
 
 // An Earth whose pages all exist down to a level; which are on the GPU is the test's to say.
 class FakePages final : public PageAccess {
@@ -26,6 +28,7 @@ class FakePages final : public PageAccess {
   }
   std::optional<int> Slot(const PageKey& key) override {
     if (missing_images.contains(key.node)) return std::nullopt;
+    if (key.type == kNextImagery && !next_images.contains(key.node)) return std::nullopt;
     return 1000 + key.node.level();
   }
   bool Want(const PageKey& key, float priority) override {
@@ -34,6 +37,7 @@ class FakePages final : public PageAccess {
   }
 
   std::set<Quadcode> missing, missing_images, failed;
+  std::set<Quadcode> next_images;  // of the next step, those that are there
   std::map<PageKey, float> wanted;
 
  private:
@@ -59,6 +63,7 @@ class CutTest : public testing::Test {
   CutTest() {
     layers_.Add({"terrain", PageKind::kTerrain, 0, 12, [](Quadcode node) { return node.level() <= 12; }});
     layers_.Add({"imagery", PageKind::kColour, 0, 5, [](Quadcode node) { return node.level() <= 5; }});
+    layers_.Add({"next imagery", PageKind::kColour, 0, 5, [](Quadcode node) { return node.level() <= 5; }});
     LookFrom(37, -118, 20'000, -30);
   }
   void LookFrom(double latitude, double longitude, double height, double pitch_deg) {
@@ -67,7 +72,7 @@ class CutTest : public testing::Test {
     view_.image_layers = {{kImagery}};
   }
   Cut Select(const CutLimits& limits = {}) {
-    return SelectCut(view_, MatricesOf(view_, 0, 1000), layers_, kTerrain, limits, pages_);
+    return SelectCut(view_, MatricesOf(view_, 0, 1000), layers_, kTerrain, limits, pages_, before_);
   }
   static int Deepest(const Cut& cut) {
     int deepest = 0;
@@ -78,6 +83,7 @@ class CutTest : public testing::Test {
   LayerTable layers_;
   FakePages pages_;
   ViewParameters view_;
+  std::vector<DataType> before_;
 };
 
 // Every cut covers the Earth exactly once.
@@ -253,6 +259,58 @@ TEST_F(CutTest, OrthographicViewsMeasureByScaleAlone) {
   const int coarse = Deepest(Select());
   view_.ortho_height_m = 4e5;
   EXPECT_GT(Deepest(Select()), coarse);
+}
+
+// A layer goes on to its next step, of which nothing is there yet.
+TEST_F(CutTest, TheStepBeforeIsShownUntilTheNextIsAsFine) {
+  const Cut whole = Select();
+  before_ = {kImagery};
+  view_.image_layers = {{kNextImagery}};
+  for (int tree = 0; tree < kTrees; ++tree) pages_.next_images.insert(Quadcode::Root(tree));
+  pages_.wanted.clear();
+  const Cut cut = Select();
+  ASSERT_EQ(cut.nodes.size(), whole.nodes.size());
+  std::set<Quadcode> before;
+  for (size_t i = 0; i < cut.nodes.size(); ++i) {
+    const ImageUse& image = cut.nodes[i].images[0];
+    const bool is_root = whole.nodes[i].images[0].source.is_root();
+    EXPECT_EQ(image.slot, whole.nodes[i].images[0].slot) << "nothing coarser is flashed in";
+    EXPECT_EQ(image.type, is_root ? kNextImagery : kImagery);
+    if (!is_root) before.insert(image.source);
+  }
+  EXPECT_GT(before.size(), 10U);
+  EXPECT_EQ(cut.of_step_before[0], static_cast<int>(before.size()));
+  EXPECT_TRUE(cut.waiting);
+  EXPECT_FALSE(cut.behind) << "what is shown is of another time, but no coarser than the bound asks";
+  for (const auto& [key, unused] : pages_.wanted) EXPECT_EQ(key.type, kNextImagery) << "what goes is not asked for";
+}
+
+TEST_F(CutTest, AQuadnodeChangesOverWhenItsImageOfTheNextStepIsThere) {
+  before_ = {kImagery};
+  view_.image_layers = {{kNextImagery}};
+  const Quadcode under = Quadcode::Containing(37, -118, 5);
+  pages_.next_images = {under, under.Ancestor(3)};
+  const Cut cut = Select();
+  int of_next = 0;
+  std::set<Quadcode> before;
+  for (const CutNode& node : cut.nodes) {
+    const ImageUse& image = node.images[0];
+    EXPECT_GE(image.slot, 1000) << "nothing goes blank";
+    if (image.type != kNextImagery) {
+      before.insert(image.source);
+      continue;
+    }
+    ++of_next;
+    EXPECT_TRUE(pages_.next_images.contains(image.source));
+    if (under.Contains(node.node)) {
+      EXPECT_EQ(image.source, under);
+    }
+  }
+  EXPECT_GT(of_next, 0);
+  EXPECT_EQ(cut.of_step_before[0], static_cast<int>(before.size()));
+  before_ = {kNextImagery};  // ended: the best there is of the next
+  pages_.next_images.insert(under.Ancestor(0));
+  EXPECT_EQ(Select().of_step_before[0], 0);
 }
 
 }  // namespace

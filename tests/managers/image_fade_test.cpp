@@ -16,11 +16,13 @@ class FakePages final : public PageAccess {
  public:
   const TerrainPage* Terrain(Quadcode) override { return nullptr; }
   std::optional<int> Slot(const PageKey& key) override {
+    if (const auto step = steps.find(key); step != steps.end()) return step->second;
     const auto found = slots.find(key.node);
     return found == slots.end() ? std::nullopt : std::optional<int>(found->second);
   }
   bool Want(const PageKey&, float) override { return true; }
   std::map<Quadcode, int> slots;
+  std::map<PageKey, int> steps;  // and those of which it matters of which step they are
 };
 
 class ImageFadeTest : public testing::Test {
@@ -33,8 +35,12 @@ class ImageFadeTest : public testing::Test {
     const int levels = node.level() - source.level();
     const auto scale = static_cast<float>(std::ldexp(1.0, -levels));
     const auto across = (int64_t{1} << levels) - 1;
-    shown.images[0] = {pages_.slots.at(source), scale * static_cast<float>(node.column() & across),
-                       scale * static_cast<float>(node.row() & across), scale, source};
+    shown.images[0] = {pages_.slots.at(source),
+                       scale * static_cast<float>(node.column() & across),
+                       scale * static_cast<float>(node.row() & across),
+                       scale,
+                       source,
+                       kImagery};
     fade_.Apply(std::span(&shown, 1), layers_, now_s, jump, pages_);
     return shown;
   }
@@ -77,9 +83,11 @@ TEST_F(ImageFadeTest, TheNextImageWaitsUntilTheLastIsThere) {
   const CutNode waiting = Shown(kGrandchild, kGrandchild, 1.1);
   EXPECT_EQ(waiting.images[0].slot, 8);
   EXPECT_EQ(waiting.from[0].slot, 7);
+  EXPECT_TRUE(fade_.waits()) << "another list is needed";
   const CutNode next = Shown(kGrandchild, kGrandchild, 1.4);
   EXPECT_EQ(next.images[0].slot, 9);
   EXPECT_EQ(next.from[0].slot, 8);
+  EXPECT_FALSE(fade_.waits());
 }
 
 TEST_F(ImageFadeTest, ShowsAtOnceWhatItCannotBlend) {
@@ -88,6 +96,27 @@ TEST_F(ImageFadeTest, ShowsAtOnceWhatItCannotBlend) {
   Shown(kChild, kRoot, 2, true);
   pages_.slots.erase(kRoot);
   EXPECT_EQ(Shown(kChild, kChild, 3).from[0].slot, -1) << "the image before is gone";
+}
+
+TEST_F(ImageFadeTest, AnotherStepOfTheLayerIsBlendedInOverTheOneBefore) {
+  constexpr DataType kNextStep = 4;
+  const auto shown = [&](DataType type, int slot, double now_s) {
+    pages_.steps[{type, kChild}] = slot;
+    CutNode node;
+    node.node = kChild;
+    node.images[0] = {slot, 0, 0, 1, kChild, type};
+    fade_.Apply(std::span(&node, 1), layers_, now_s, false, pages_);
+    return node;
+  };
+  shown(kImagery, 8, 0);
+  const CutNode node = shown(kNextStep, 20, 1);
+  EXPECT_EQ(node.images[0].slot, 20);
+  EXPECT_EQ(node.from[0].slot, 8) << "of the same quadnode, but of the step before";
+  EXPECT_EQ(node.from[0].type, kImagery);
+  EXPECT_DOUBLE_EQ(node.fade_until_s[0], 1 + ImageFade::kFade_s);
+  const CutNode still = shown(kNextStep, 20, 1.2);
+  EXPECT_EQ(still.from[0].slot, 8);
+  EXPECT_EQ(shown(kNextStep, 20, 1.4).from[0].slot, -1);
 }
 
 }  // namespace

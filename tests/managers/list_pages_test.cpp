@@ -95,18 +95,20 @@ TEST_F(ListPagesTest, WhatItHandsOutStaysUntilTheListIsCleared) {
 
 // Otherwise a view would wait for ever for images that find no place.
 TEST_F(ListPagesTest, NoMoreImagesAreWantedThanFit) {
-  PutImage(Quadcode::Root(0)).page().residency()->Place(1);
-  PutImage(Quadcode::Root(1));
+  const auto image = [&](int which) { return PageKey{kImagery, node_.Child(which)}; };
+  PutImage(image(0).node).page().residency()->Place(1);
+  PutImage(image(1).node);
   ListPages pages(paging_, kTerrain, list_, {.colour = 3});
-  EXPECT_TRUE(pages.Slot({kImagery, Quadcode::Root(0)}));     // one is there,
-  EXPECT_TRUE(pages.Want({kImagery, Quadcode::Root(1)}, 1));  // one waits for its upload,
-  EXPECT_TRUE(pages.Want({kImagery, Quadcode::Root(2)}, 1));  // and one is to be read
-  EXPECT_TRUE(pages.Want({kImagery, Quadcode::Root(2)}, 1));  // as it was
+  EXPECT_TRUE(pages.Slot(image(0)));     // one is there,
+  EXPECT_TRUE(pages.Want(image(1), 1));  // one waits for its upload,
+  EXPECT_TRUE(pages.Want(image(2), 1));  // and one is to be read
+  EXPECT_TRUE(pages.Want(image(2), 1));  // as it was
   EXPECT_FALSE(pages.at_limit());
-  EXPECT_FALSE(pages.Want({kImagery, Quadcode::Root(3)}, 1));
+  EXPECT_FALSE(pages.Want(image(3), 1));
   EXPECT_TRUE(pages.at_limit());
-  EXPECT_TRUE(pages.Want({kTerrain, Quadcode::Root(3)}, 1)) << "terrain needs no place there";
+  EXPECT_TRUE(pages.Want({kTerrain, node_.Child(3)}, 1)) << "terrain needs no place there";
   EXPECT_EQ(pages.pages_waiting(), 3U);
+  EXPECT_TRUE(pages.Want({kImagery, node_.Ancestor(0)}, 1)) << "nor is the ground left bare";
 }
 
 TEST_F(ListPagesTest, AFailedPageIsNotWishedForAgain) {

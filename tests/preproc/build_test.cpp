@@ -415,5 +415,133 @@ TEST(Build, AGeoreferenceMayBeGiven) {
   EXPECT_NEAR(HeightAt(*dataset, 36.5, 43.5), 630, 5);
 }
 
+// One grey over the whole Earth.
+std::string Grey(const std::string& path, double value) {
+  return Write(
+      path, {.width = 36, .height = 18, .type = GDT_Byte, .affine = Degrees(-180, 90, 10), .value = [=](int, int, int) {
+               return value;
+             }});
+}
+
+TEST(Build, EachTimeOfALayerIsBuiltOverWhatHasNone) {
+  const std::string folder = FreshFolder("times");
+  Grey(folder + "/under.tif", 10);
+  // The two months cover the west alone.
+  for (const auto& [name, value] : {std::pair{"january", 100.0}, std::pair{"july", 200.0}}) {
+    Write(folder + "/" + name + ".tif", {.width = 18,
+                                         .height = 18,
+                                         .type = GDT_Byte,
+                                         .affine = Degrees(-180, 90, 10),
+                                         .value = [value = value](int, int, int) { return value; }});
+  }
+  const std::string text =
+      "[[layer]]\nname = \"seasons\"\nkind = \"imagery\"\nrepeats = \"year\"\n"
+      "[[layer.source]]\npath = \"july.tif\"\ntime = \"2004-07-01\"\n"
+      "[[layer.source]]\npath = \"january.tif\"\ntime = \"2004-01-01\"\n"
+      "[[layer.source]]\npath = \"gone.tif\"\ntime = \"2004-10-01\"\n"
+      "[[layer.source]]\npath = \"under.tif\"\n";
+  const auto report = MustBuild(folder, text);
+  ASSERT_EQ(report.skipped.size(), 1u);
+  EXPECT_EQ(report.skipped[0].source, "gone.tif");
+  EXPECT_TRUE(report.warnings.empty());
+  const auto dataset = MustOpen(folder);
+  ASSERT_EQ(dataset->layers().size(), 2u) << "without its source October is no step";
+  const auto grey_at = [&](int layer, double longitude) {
+    const auto page = dataset->ReadImage(layer, Quadcode::Containing(20, longitude, 0));
+    EXPECT_TRUE(page.ok());
+    return static_cast<int>((*page)->texels[static_cast<size_t>(4 * (kImageSide * kImageSide / 2 + kImageSide / 2))]);
+  };
+  EXPECT_EQ(dataset->layers()[0].name, "seasons@2004-01-01T00:00:00Z");
+  EXPECT_EQ(grey_at(0, -100), 100);
+  EXPECT_EQ(grey_at(1, -100), 200);
+  EXPECT_EQ(grey_at(0, 100), 10) << "under every time lies what has none";
+  EXPECT_EQ(grey_at(1, 100), 10);
+  ASSERT_TRUE(dataset->layers()[1].step);
+  EXPECT_EQ(dataset->layers()[1].step->layer, "seasons");
+  EXPECT_TRUE(VerifyDataset(*dataset).problems.empty());
+
+  const std::string shown = DescribeDataset(*dataset);
+  EXPECT_NE(shown.find("step of layer seasons, from 2004-07-01T00:00:00Z on, every year"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("source july.tif"), std::string::npos) << shown;
+  EXPECT_NE(shown.find(", time 2004-07-01T00:00:00Z"), std::string::npos) << shown;
+  const std::string json = DescribeDatasetJson(*dataset);
+  EXPECT_NE(json.find("\"step_of\": \"seasons\""), std::string::npos) << json;
+  EXPECT_NE(json.find("\"time\": \"2004-01-01T00:00:00Z\""), std::string::npos) << json;
+}
+
+TEST(Build, WhatIsHiddenInOneStepAndSeenInAnotherIsNoMistake) {
+  const std::string folder = FreshFolder("hidden");
+  Grey(folder + "/under.tif", 10);
+  Grey(folder + "/whole.tif", 100);
+  Write(folder + "/half.tif",
+        {.width = 18, .height = 18, .type = GDT_Byte, .affine = Degrees(-180, 90, 10), .value = [](int, int, int) {
+           return 200.0;
+         }});
+  const auto spec = [](const std::string& second) {
+    return Layer("imagery", {"path = \"under.tif\"", "path = \"whole.tif\"\ntime = \"2004-01-01\"",
+                             "path = \"" + second + "\"\ntime = \"2005-01-01\""});
+  };
+  EXPECT_TRUE(MustBuild(folder, spec("half.tif")).warnings.empty());
+  const auto report = MustBuild(folder, spec("whole.tif"));
+  ASSERT_EQ(report.warnings.size(), 1u) << "said once, not of every step";
+  EXPECT_EQ(report.warnings[0].source, "under.tif");
+}
+
+// What a grey overlay is made of: alpha and nodata are where what lies under it is seen.
+TEST(Build, GreySourcesKeepTheirAlphaAndNodata) {
+  const std::string folder = FreshFolder("greys");
+  const auto alpha = [](GDALDataset& d) { d.GetRasterBand(2)->SetColorInterpretation(GCI_AlphaBand); };
+  const auto half_west = [](double grey, double whole) {
+    return [=](int band, int column, int) {
+      return band == 1 ? grey : column < 50 ? whole : column < 100 ? whole / 2 : 0;
+    };
+  };
+  const MadeRaster two{
+      .width = 200, .height = 200, .bands = 2, .affine = Degrees(0, 20, 0.1), .value = {}, .finish = alpha};
+  MadeRaster eight = two, sixteen = two, bare = two, one = two;
+  eight.type = GDT_Byte;
+  eight.value = half_west(180, 255);
+  sixteen.type = GDT_UInt16;
+  sixteen.affine = Degrees(30, 20, 0.1);
+  // From 0 in the north to 65535 in the south.
+  sixteen.value = [whole = half_west(0, 65'535)](int band, int column, int row) {
+    return band == 1 ? row * 65'535.0 / 199 : whole(band, column, row);
+  };
+  one.type = GDT_Byte;
+  one.bands = 1;
+  one.affine = Degrees(60, 20, 0.1);
+  one.value = [](int, int column, int) { return column < 100 ? 90.0 : 255.0; };
+  one.finish = [](GDALDataset& d) { d.GetRasterBand(1)->SetNoDataValue(255); };
+  bare.type = GDT_Byte;
+  bare.affine = Degrees(90, 20, 0.1);
+  bare.value = half_west(70, 255);
+  bare.finish = [](GDALDataset&) {};
+  std::vector<std::string> sources;
+  for (const auto& [name, made] : {std::pair{"eight", &eight}, {"sixteen", &sixteen}, {"one", &one}, {"bare", &bare}}) {
+    Write(folder + "/" + name + ".tif", *made);
+    sources.push_back("path = \"" + std::string(name) + ".tif\"");
+  }
+  const auto report = MustBuild(folder, Layer("imagery", sources));
+  EXPECT_TRUE(report.skipped.empty());
+  const auto dataset = MustOpen(folder);
+  using Rgba = std::array<int, 4>;
+  EXPECT_EQ(TexelAt(*dataset, 10, 2), (Rgba{180, 180, 180, 255}));
+  EXPECT_EQ(TexelAt(*dataset, 10, 7.5), (Rgba{180, 180, 180, 128}));
+  EXPECT_EQ(TexelAt(*dataset, 10, 15), (Rgba{0, 0, 0, 0}));
+  const Rgba middle = TexelAt(*dataset, 10, 32);
+  EXPECT_NEAR(middle[0], 140, 15) << "stretched from about its range";
+  EXPECT_EQ(middle[2], middle[0]);
+  EXPECT_EQ(middle[3], 255);
+  EXPECT_EQ(TexelAt(*dataset, 10, 37.5)[3], 128);
+  EXPECT_EQ(TexelAt(*dataset, 10, 45), (Rgba{0, 0, 0, 0}));
+  EXPECT_EQ(TexelAt(*dataset, 10, 65), (Rgba{90, 90, 90, 255}));
+  EXPECT_EQ(TexelAt(*dataset, 10, 75), (Rgba{0, 0, 0, 0}));
+  EXPECT_EQ(TexelAt(*dataset, 10, 105), (Rgba{70, 70, 70, 255}));
+  const auto said = std::find_if(report.warnings.begin(), report.warnings.end(),
+                                 [](const SourceRemark& remark) { return remark.source == "bare.tif"; });
+  ASSERT_NE(said, report.warnings.end());
+  EXPECT_NE(said->reason.find("not said to be alpha"), std::string::npos) << said->reason;
+}
+
 }  // namespace
 }  // namespace belvedere

@@ -101,5 +101,83 @@ TEST(Spec, WhatIsMissingOrTwiceIsSaid) {
   EXPECT_TRUE(Has(LoadSpec("/nonexistent/x.toml").message(), "/nonexistent/x.toml"));
 }
 
+TEST(Spec, SourcesWithTimesMakeALayerOfSteps) {
+  const auto spec = ParseSpec(R"(
+[[layer]]
+name = "seasons"
+kind = "imagery"
+repeats = "year"
+  [[layer.source]]
+  path = "july.tif"
+  time = "2004-07-01"
+  [[layer.source]]
+  path = "under.tif"
+  [[layer.source]]
+  path = "january.tif"
+  time = "2004-01-01T01:00:00+01:00"
+  [[layer.source]]
+  path = "july_better.tif"
+  time = "2004-07-01T00:00:00Z"
+[[layer]]
+name = "plain"
+kind = "imagery"
+  [[layer.source]]
+  path = "a.tif"
+)",
+                              "earth.toml");
+  ASSERT_TRUE(spec.ok()) << spec.message();
+  ASSERT_EQ(spec->layers.size(), 3u);
+  const auto paths = [](const LayerSpec& layer) {
+    std::string text;
+    for (const SourceSpec& source : layer.sources) text += source.written_path + " ";
+    return text;
+  };
+  EXPECT_EQ(spec->layers[0].name, "seasons@2004-01-01T00:00:00Z");
+  EXPECT_EQ(paths(spec->layers[0]), "under.tif january.tif ");
+  EXPECT_EQ(spec->layers[1].name, "seasons@2004-07-01T00:00:00Z");
+  EXPECT_EQ(paths(spec->layers[1]), "under.tif july.tif july_better.tif ") << "at one time the best is last";
+  ASSERT_TRUE(spec->layers[1].step);
+  EXPECT_EQ(spec->layers[1].step->layer, "seasons");
+  EXPECT_EQ(spec->layers[1].step->repeats, Repeats::kEveryYear);
+  EXPECT_FALSE(spec->layers[2].step);
+  EXPECT_EQ(spec->layers[2].name, "plain");
+}
+
+TEST(Spec, WrongTimesAreSaid) {
+  const auto layer = [](const std::string& kind, const std::string& repeats, const std::vector<std::string>& times) {
+    std::string text = "[[layer]]\nname = \"i\"\nkind = \"" + kind + "\"\n" + repeats + "\n";
+    for (const std::string& time : times) text += "[[layer.source]]\npath = \"a\"\n" + time + "\n";
+    return text;
+  };
+  const std::string january = "time = \"2004-01-01\"", next = "time = \"2005-02-01\"";
+  const std::string yearly = "repeats = \"year\"";
+  const struct {
+    std::string text;
+    std::vector<const char*> parts;
+  } kWrong[] = {{layer("imagery", "", {"time = \"winter\""}),
+                 {"dir/earth.toml:7:", "\"time\"", "2004-01-01T00:00:00Z", "winter"}},
+                {layer("imagery", "", {"time = \"2004-02-30\""}), {":7:", "2004-02-30"}},
+                {layer("imagery", "", {"time = 2004-01-01"}), {":7:", "must be a string"}},
+                {layer("elevation", "", {january}), {":7:", "\"time\" means nothing for elevation"}},
+                {layer("imagery", "repeats = \"day\"", {january}), {":4:", "\"year\"", "\"day\""}},
+                {layer("imagery", yearly, {""}), {":4:", "\"repeats\" needs sources with a \"time\""}},
+                {layer("imagery", yearly, {january, next}), {":4:", "2004-01-01T00:00:00Z", "2005-02-01T00:00:00Z"}},
+                {layer("imagery", "", {january}) + layer("imagery", "", {""}), {"two layers are named \"i\""}},
+                {layer("imagery", "repeat = 1", {january}), {"\"repeat\"", "\"repeats\""}}};
+  for (const auto& wrong : kWrong) {
+    const std::string message = Message(wrong.text);
+    for (const char* part : wrong.parts) EXPECT_TRUE(Has(message, part)) << message;
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  }
+}
+
+TEST(Spec, EachTimeCountsAsALayer) {
+  std::string text = "[[layer]]\nname = \"i\"\nkind = \"imagery\"\n";
+  for (int year = 1700; year <= 1700 + kMaxDatasetLayers; ++year) {
+    text += "[[layer.source]]\npath = \"a\"\ntime = \"" + std::to_string(year) + "-01-01\"\n";
+  }
+  EXPECT_TRUE(Has(Message(text), "257 layers, each time of a layer counted, at most 256"));
+}
+
 }  // namespace
 }  // namespace belvedere

@@ -43,6 +43,30 @@ class Layers : public ::testing::Test {
     list.statistics.height_above_ground_m = 5000;
     stage_->channel->terrain_lists.Publish();
   }
+  // The same list again, with what `change` makes of a draw and the slot of another image.
+  template <typename Change>
+  void LoadAgain(Quadcode elsewhere, Rgba colour, Change change) {
+    std::vector<PagePin> pins;
+    pins.push_back(scene_.AddColour(elsewhere, colour));
+    stage_->Upload(std::move(pins));
+    DisplayList& list = stage_->channel->terrain_lists.back();
+    list.Clear();
+    AddSurface(list, scene_, nodes_, 32);
+    const int other = PinInto(list, scene_.Find(scene_.colour_type(), elsewhere));
+    for (TerrainDraw& draw : list.terrain_draws) change(draw, other);
+    list.time_s = clock_.NowSeconds();
+    list.statistics.height_above_ground_m = 5000;
+    list.statistics.rises_until_s = list.time_s + 0.3;
+    stage_->channel->terrain_lists.Publish();
+  }
+  // Blended in over another image from now on.
+  void BlendOver(Rgba colour) {
+    LoadAgain(Quadcode::Containing(50, 50, 10), colour, [](TerrainDraw& draw, int other) {
+      draw.from[0] = draw.images[0];
+      draw.from[0].slot = other;
+      draw.fade_s[0] = 0.3F;
+    });
+  }
   // The colour in the middle of the picture, as the view is now: no new list is made for a change of it.
   Rgba Middle() {
     ++view_.number;
@@ -110,23 +134,7 @@ TEST_F(Layers, GreyHasNoHue) {
 TEST_F(Layers, AnImageIsBlendedInOverTheOneBefore) {
   Load(kGround, std::nullopt);
   const Rgba after = Middle();
-  // The same list again, blended in over a darker image.
-  const Quadcode elsewhere = Quadcode::Containing(50, 50, 10);
-  std::vector<PagePin> pins;
-  pins.push_back(scene_.AddColour(elsewhere, {20, 20, 20, 255}));
-  stage_->Upload(std::move(pins));
-  DisplayList& list = stage_->channel->terrain_lists.back();
-  list.Clear();
-  AddSurface(list, scene_, nodes_, 32);
-  const int darker = PinInto(list, scene_.Find(scene_.colour_type(), elsewhere));
-  for (TerrainDraw& draw : list.terrain_draws) {
-    draw.from[0] = draw.images[0];
-    draw.from[0].slot = darker;
-    draw.fade_s[0] = 0.3F;
-  }
-  list.statistics.height_above_ground_m = 5000;
-  list.statistics.rises_until_s = 0.3;
-  stage_->channel->terrain_lists.Publish();
+  BlendOver({20, 20, 20, 255});
   const Rgba before = Middle();
   clock_.Advance(0.15);
   const Rgba half = Middle();
@@ -134,6 +142,36 @@ TEST_F(Layers, AnImageIsBlendedInOverTheOneBefore) {
   ExpectNear(Middle(), after, 0);
   for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(half[i], (before[i] + after[i]) / 2, 4);
   EXPECT_LT(before[2], after[2] - 60);
+}
+
+// A bright overlay that goes, or comes, leaves no shadow meanwhile.
+TEST_F(Layers, WhereOneOfTheTwoIsTransparentTheOtherKeepsItsColour) {
+  Load({0, 0, 0, 0}, std::nullopt);
+  const Rgba after = Middle();  // bare ground
+  BlendOver({250, 250, 250, 255});
+  const Rgba before = Middle();
+  clock_.Advance(0.15);
+  const Rgba half = Middle();
+  for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(half[i], (before[i] + after[i]) / 2, 4);
+  EXPECT_GT(before[1], after[1] + 20);
+}
+
+TEST_F(Layers, AGreyOverlayLetsThroughWhereItIsTransparent) {
+  Load(kGround, std::nullopt);
+  const auto over = [&](uint8_t alpha) {
+    const Quadcode elsewhere = Quadcode::Containing(50, 50 + alpha / 10.0, 10);
+    LoadAgain(elsewhere, {230, 230, 230, alpha}, [](TerrainDraw& draw, int other) {
+      draw.images[1] = draw.images[0];
+      draw.images[1].slot = other;
+    });
+    return Middle();
+  };
+  view_.image_layers = {{scene_.colour_type(), LayerRole::kColour}, {scene_.colour_type(), LayerRole::kGrey}};
+  const Rgba bare = over(0), half = over(128), whole = over(255);
+  view_.image_layers.pop_back();
+  ExpectNear(Middle(), bare, 0);
+  EXPECT_GT(whole[0], bare[0] + 60);
+  for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(half[i], (whole[i] + bare[i]) / 2, 3);
 }
 
 TEST_F(Layers, ATintShowsHowTheGroundIsDrawn) {

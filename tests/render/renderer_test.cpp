@@ -293,6 +293,11 @@ TEST_F(Drawing, AViewOfWhichNothingChangesKeepsItsPicture) {
   stage_->channel->parameters.Publish(view);
   for (int i = 0; i < 3; ++i) stage_->Frame();
   EXPECT_EQ(frames(), before + 7) << "an eye that flies";
+  view.eye_velocity_mps = {0, 0, 0};
+  view.time_rate = 3600;
+  stage_->channel->parameters.Publish(view);
+  for (int i = 0; i < 3; ++i) stage_->Frame();
+  EXPECT_EQ(frames(), before + 10) << "a sun that goes fast";
 }
 
 TEST_F(Drawing, TheHudIsDrawnOverThePicture) {

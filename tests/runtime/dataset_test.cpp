@@ -1,5 +1,6 @@
 #include "runtime/paging/dataset.h"
 
+#include "runtime/base/iso_time.h"
 #include "runtime/paging/dataset_store.h"
 #include "runtime/paging/dataset_writer.h"
 #include "runtime/paging/page_codec.h"
@@ -209,6 +210,47 @@ TEST(Dataset, BilinearHeightIsThatOfThePosts) {
   EXPECT_NEAR(BilinearHeight(page, node, box.north_deg, box.east_deg), page.at(kCells, kCells) / 1000.0, 1e-9);
   const double middle = (page.at(4, 9) + page.at(5, 9) + page.at(4, 10) + page.at(5, 10)) / 4000.0;
   EXPECT_NEAR(BilinearHeight(page, node, box.south_deg + 9.5 * cell, box.west_deg + 4.5 * cell + 360), middle, 1e-9);
+}
+
+TEST(Dataset, StepsOfALayerAreKept) {
+  store::Metadata metadata;
+  metadata.build_time = "2026-01-02T03:04:05Z";
+  for (const char* time : {"2004-01-01T00:00:00Z", "2004-07-01T12:30:00Z"}) {
+    LayerRecord layer = Layer("seasons@" + std::string(time), LayerKind::kImagery);
+    layer.step = StepOf{"seasons", *ParseIsoTime(time), Repeats::kEveryYear};
+    layer.sources[0].utc_s = layer.step->utc_s;
+    metadata.layers.push_back(layer);
+  }
+  metadata.layers.push_back(Layer("elevation", LayerKind::kElevation));
+  const auto read = store::FromJson(store::ToJson(metadata));
+  ASSERT_TRUE(read.ok()) << read.message();
+  ASSERT_TRUE(read->layers[1].step);
+  EXPECT_EQ(read->layers[1].step->layer, "seasons");
+  EXPECT_EQ(read->layers[1].step->utc_s, *ParseIsoTime("2004-07-01T12:30:00Z"));
+  EXPECT_EQ(read->layers[1].step->repeats, Repeats::kEveryYear);
+  EXPECT_EQ(read->layers[1].sources[0].utc_s, read->layers[1].step->utc_s);
+  EXPECT_FALSE(read->layers[2].step);
+  EXPECT_FALSE(read->layers[2].sources[0].utc_s);
+}
+
+TEST(Dataset, MetadataOfALayerThatDoesNotChangeAreAsTheyWere) {
+  const std::string text = store::ToJson({"2026-01-02T03:04:05Z", {Layer("imagery", LayerKind::kImagery)}});
+  EXPECT_EQ(text.find("step_of"), std::string::npos);
+  EXPECT_EQ(text.find("\"time\""), std::string::npos);
+}
+
+TEST(Dataset, AStepOfNoTimeIsDamage) {
+  LayerRecord layer = Layer("seasons@2004-01-01T00:00:00Z", LayerKind::kImagery);
+  layer.step = StepOf{"seasons", *ParseIsoTime("2004-01-01"), Repeats::kEveryYear};
+  const std::string good = store::ToJson({"2026-01-02T03:04:05Z", {layer}});
+  for (const auto& [from, to] :
+       {std::pair{"\"2004-01-01T00:00:00Z\"", "\"winter\""}, std::pair{"\"year\"", "\"day\""}}) {
+    std::string bad = good;
+    bad.replace(bad.find(from), std::string(from).size(), to);
+    const auto read = store::FromJson(bad);
+    ASSERT_FALSE(read.ok());
+    EXPECT_NE(read.message().find("damaged"), std::string::npos) << read.message();
+  }
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "runtime/paging/layer_table.h"
 
+#include "runtime/base/iso_time.h"
+
 #include <gtest/gtest.h>
 
 namespace belvedere {
@@ -44,6 +46,41 @@ TEST(LayerTable, FindsTheDeepestPageThatExists) {
   EXPECT_EQ(table.DeepestExisting(2, inside), std::nullopt);
   const Quadcode elsewhere = Quadcode::Containing(-20, 60, 9);
   EXPECT_EQ(table.DeepestExisting(0, elsewhere), elsewhere.Ancestor(0));
+}
+
+LayerTable WithSteps(Repeats repeats) {
+  LayerTable table = SomeLayers();
+  const auto step = [&](const char* name, const char* time) {
+    Layer layer = MakeLayer(name, PageKind::kColour, 2, [](Quadcode) { return true; });
+    layer.step = StepOf{"seasons", *ParseIsoTime(time), repeats};
+    table.Add(std::move(layer));
+  };
+  step("seasons", "2004-07-01");  // whichever is added first stands for all
+  step("seasons@2004-10-01T00:00:00Z", "2004-10-01");
+  step("seasons@2004-01-01T00:00:00Z", "2004-01-01");
+  return table;
+}
+
+TEST(LayerTable, OfALayersStepsThatOfTheTimeIsUsed) {
+  const LayerTable table = WithSteps(Repeats::kNever);
+  const DataType seasons = table.Find("seasons")->type;
+  const auto name_at = [&](const char* time) { return table.at(table.TypeAt(seasons, *ParseIsoTime(time))).name; };
+  EXPECT_EQ(name_at("1999-12-01"), "seasons@2004-01-01T00:00:00Z");
+  EXPECT_EQ(name_at("2004-06-30"), "seasons@2004-01-01T00:00:00Z");
+  EXPECT_EQ(name_at("2004-07-01"), "seasons");
+  EXPECT_EQ(name_at("2026-07-01"), "seasons@2004-10-01T00:00:00Z");
+  const LayerTable yearly = WithSteps(Repeats::kEveryYear);
+  EXPECT_EQ(yearly.at(yearly.TypeAt(seasons, *ParseIsoTime("2026-07-01"))).name, "seasons");
+  EXPECT_EQ(table.TypeAt(table.Find("imagery")->type, 0), table.Find("imagery")->type) << "it does not change";
+}
+
+TEST(LayerTable, OneOfTheStepsStandsForAll) {
+  const LayerTable table = WithSteps(Repeats::kEveryYear);
+  EXPECT_EQ(table.Find("seasons")->steps.size(), 3U);
+  EXPECT_TRUE(table.Find("seasons")->is_whole());
+  EXPECT_TRUE(table.Find("imagery")->is_whole());
+  EXPECT_FALSE(table.Find("seasons@2004-01-01T00:00:00Z")->is_whole());
+  EXPECT_TRUE(table.Find("seasons@2004-01-01T00:00:00Z")->steps.empty());
 }
 
 }  // namespace

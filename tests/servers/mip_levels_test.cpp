@@ -48,5 +48,27 @@ TEST(MipLevels, WhatIsTransparentLendsNoColour) {
   EXPECT_EQ(half[7], 0);
 }
 
+// Halfway between a bright texel and a transparent one the filter must not find a dark colour.
+TEST(MipLevels, TheRimOfAnOverlayHasItsColour) {
+  ImagePage page = EmptyPage(ImageFormat::kRGBA8);
+  for (size_t row = 0; row < 256; ++row) {
+    for (size_t column = 0; column < 100; ++column) {
+      uint8_t* texel = &page.texels[4 * (row * 256 + column)];
+      std::fill(texel, texel + 3, uint8_t{230});
+      texel[3] = 255;
+    }
+  }
+  FillMipLevels(page);
+  ColourRims(page);
+  for (int level = 0; level < kImageMipLevels; ++level) {
+    const size_t side = static_cast<size_t>(kImageSide >> level), rim = 100U >> static_cast<unsigned>(level);
+    const uint8_t* row = &page.texels[ImagePage::MipOffset(level, page.format) + 4 * side * (side / 2)];
+    EXPECT_EQ(row[4 * (rim - 1) + 3], 255);
+    EXPECT_EQ(row[4 * rim], 230) << "level " << level;
+    EXPECT_EQ(row[4 * rim + 3], 0) << "it stays transparent";
+    EXPECT_EQ(row[4 * (rim + 1)], 0) << "and no further than it is filtered";
+  }
+}
+
 }  // namespace
 }  // namespace belvedere

@@ -2,6 +2,7 @@
 //
 //   elevation  the 32 roots, the four children of root 20, and the four of its child 3
 //   imagery    the 32 roots and the four children of root 21
+//   seasons    where it is asked for: steps of one grey each, the 32 roots
 #pragma once
 
 #include "runtime/paging/dataset.h"
@@ -15,12 +16,15 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace belvedere {
 
 struct SmallDatasetOptions {
   std::string elevation_name = "elevation";
   bool has_elevation = true;
+  std::vector<uint8_t> season_greys;  // of each step
+  std::string seasons_name = "seasons";
   Quadcode damaged = Quadcode::Root(0).Child(0);  // its elevation page is stored with a wrong checksum, if it is there
 };
 
@@ -38,6 +42,11 @@ class SmallDataset {
     }
     PutImagery(**writer, static_cast<int>(layers.size()));
     layers.push_back(Record("imagery", LayerKind::kImagery, 1));
+    for (size_t step = 0; step < options.season_greys.size(); ++step) {
+      PutSeason(**writer, static_cast<int>(layers.size()), options.season_greys[step]);
+      layers.push_back(Record(options.seasons_name + "@" + std::to_string(step), LayerKind::kImagery, 0));
+      layers.back().step = StepOf{options.seasons_name, SeasonTime(step), Repeats::kNever};
+    }
     BELVEDERE_CHECK((*writer)->Finish(layers, "2026-01-01T00:00:00Z").ok());
     Result<std::unique_ptr<Dataset>> opened = Dataset::Open(path_);
     BELVEDERE_CHECK(opened.ok());
@@ -52,6 +61,7 @@ class SmallDataset {
   SmallDataset& operator=(const SmallDataset&) = delete;
 
   const Dataset& operator*() const { return *dataset_; }
+  static double SeasonTime(size_t step) { return 8e6 * static_cast<double>(step); }
 
  private:
   static LayerRecord Record(const std::string& name, LayerKind kind, int max_level) {
@@ -76,6 +86,11 @@ class SmallDataset {
       put(Quadcode::Root(20).Child(child));
       put(Quadcode::Root(20).Child(3).Child(child));
     }
+  }
+
+  static void PutSeason(DatasetWriter& writer, int layer, uint8_t grey) {
+    const std::vector<uint8_t> value = EncodeImage(std::vector<uint8_t>(kImageTexels * 4, grey));
+    for (int tree = 0; tree < kTrees; ++tree) BELVEDERE_CHECK(writer.Put(layer, Quadcode::Root(tree), value).ok());
   }
 
   static void PutImagery(DatasetWriter& writer, int layer) {

@@ -224,5 +224,30 @@ TEST(StockModules, ALayerMayNotTakeTheNameOfAnother) {
   EXPECT_NE(house.registered().message().find("terrain"), std::string::npos);
 }
 
+TEST(StockModules, StepsOfALayerAreReadEachAndNamedAsOne) {
+  SmallDatasetOptions options;
+  options.season_greys = {50, 200};
+  House house(options);
+  ASSERT_TRUE(house.registered().ok()) << house.registered().message();
+  const Layer& seasons = house.layer("seasons");
+  ASSERT_EQ(seasons.steps.size(), 2U);
+  EXPECT_EQ(house.paging().layers.FirstOf(PageKind::kColour)->name, "imagery");
+  for (const size_t step : {0U, 1U}) {
+    const DataType type = house.paging().layers.TypeAt(seasons.type, SmallDataset::SeasonTime(step));
+    const Layer& layer = house.paging().layers.at(type);
+    EXPECT_EQ(layer.is_whole(), step == 0);
+    const Result<PagePin> page = house.Read(layer.name.c_str(), kOtherRoot);
+    ASSERT_TRUE(page.ok()) << page.message();
+    EXPECT_EQ(page->as<ImagePage>().texels[4 * 1000], options.season_greys[step]);
+  }
+}
+
+TEST(StockModules, ALayerWithStepsMayNotTakeTheNameOfAnother) {
+  SmallDatasetOptions options;
+  options.season_greys = {50, 200};
+  options.seasons_name = "relief";
+  EXPECT_NE(House(options).registered().message().find("relief"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace belvedere

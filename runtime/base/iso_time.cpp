@@ -1,7 +1,9 @@
-#include "runtime/app/iso_time.h"
+#include "runtime/base/iso_time.h"
 
-#include <charconv>
+#include <fmt/format.h>
+
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 
 namespace belvedere {
@@ -79,6 +81,17 @@ std::optional<double> ParseIsoTime(std::string_view text) {
   const auto zone_s = TakeZone(text);
   if (!zone_s || !text.empty()) return std::nullopt;
   return midnight_s + *seconds - *zone_s;
+}
+
+std::string FormatIsoTime(double utc_s) {
+  constexpr int64_t kSecondsPerDay = 86'400;
+  const int64_t seconds = std::llround(utc_s);
+  const int64_t day = seconds / kSecondsPerDay - (seconds % kSecondsPerDay < 0 ? 1 : 0);
+  const std::chrono::year_month_day date{std::chrono::sys_days{std::chrono::days{day}}};
+  const int64_t of_day = seconds - day * kSecondsPerDay;
+  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}Z", static_cast<int>(date.year()),
+                     static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()), of_day / 3600,
+                     of_day / 60 % 60, of_day % 60);
 }
 
 }  // namespace belvedere
