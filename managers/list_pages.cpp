@@ -45,7 +45,8 @@ bool ListPages::Want(const PageKey& key, float priority) {
     uploads_.push_back({priority, paging_.cache.Find(key)});
     return true;
   }
-  if (!paging_.cache.FailureOf(key).ok()) return false;
+  known.failed = !paging_.cache.FailureOf(key).ok();
+  if (known.failed) return false;
   known.wanted = true;
   if (int* count = CountOf(key)) ++*count;
   wishes_.push_back({key, priority});
@@ -78,7 +79,23 @@ bool ListPages::HasRoomFor(const PageKey& key) {
   return count == nullptr || *count < (count == &colour_ ? limits_.colour : limits_.overlay);
 }
 
+void ListPages::CountByLayer() {
+  std::vector<LayerPages> counts(static_cast<size_t>(paging_.layers.size()));
+  for (const auto& [key, known] : known_) {
+    LayerPages& of_layer = counts[key.type];
+    if (of_layer.layer.empty()) of_layer.layer = paging_.layers.at(key.type).name;
+    of_layer.on_gpu += known.slot >= 0 ? 1 : 0;
+    of_layer.in_memory += known.slot < 0 && known.page != nullptr ? 1 : 0;
+    of_layer.asked += known.page == nullptr && known.wanted ? 1 : 0;
+    of_layer.failed += known.failed ? 1 : 0;
+  }
+  for (LayerPages& of_layer : counts) {
+    if (!of_layer.layer.empty()) list_.layer_pages.push_back(std::move(of_layer));
+  }
+}
+
 void ListPages::Finish(ViewId view, Queues queues) {
+  CountByLayer();
   std::sort(wishes_.begin(), wishes_.end(), [](const Wish& a, const Wish& b) { return a.key.type < b.key.type; });
   auto begin = wishes_.begin();
   for (int type = 0; type < paging_.layers.size(); ++type) {

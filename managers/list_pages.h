@@ -39,7 +39,8 @@ class ListPages final : public PageAccess {
 
   // Which of a view's queues a manager speaks for.
   enum class Queues { kTerrain, kObjects };
-  // Sends the wishes of that view to those queues and sorts the list's uploads, most wanted first.
+  // Sends the wishes of that view to those queues, sorts the list's uploads, most wanted first, and tells the list
+  // where the pages of each layer are.
   void Finish(ViewId view, Queues queues);
   bool at_limit() const { return at_limit_; }  // an image was refused for ImageLimits
   size_t pages_waiting() const { return wishes_.size() - foreseen_ + uploads_.size(); }
@@ -54,11 +55,14 @@ class ListPages final : public PageAccess {
     const Page* page = nullptr;  // nullptr: not in memory
     int slot = -1;               // pinned in the list
     bool wanted = false;
+    bool failed = false;
   };
   Known& Look(const PageKey& key);
   // Of the images that the list uses and wants, those of the key's kind; nullptr: it is no image.
   int* CountOf(const PageKey& key);
   bool HasRoomFor(const PageKey& key);
+
+  void CountByLayer();
 
   struct Upload {
     float priority;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "render/overlay_pass.h"
+#include "runtime/scene/display_list.h"
 
 #include <cstdint>
 #include <string>
@@ -25,13 +26,17 @@ struct HudFacts {
   double latitude_deg = 0, longitude_deg = 0;
   double height_m = 0;  // above the ellipsoid
   double height_above_ground_m = 0;
-  std::vector<std::string> notices;  // UTF-8, one line each
+  std::vector<LayerPages> layer_pages;  // one line each
+  std::vector<std::string> notices;     // UTF-8, one line each
 };
 
-// Latin-1 lines.
-std::vector<std::string> HudLines(const HudFacts& facts);
+struct HudText {
+  std::vector<std::string> lines;  // Latin-1
+  size_t first_notice = 0;         // lines from there on are notices
+};
+HudText HudTextOf(const HudFacts& facts);
 // "850 m", "12.3 km", "12 346 km"
 std::string LengthText(double metres);
-void AddHud(const std::vector<std::string>& lines, OverlayBatch& batch);
+void AddHud(const HudText& text, OverlayBatch& batch);
 
 }  // namespace belvedere

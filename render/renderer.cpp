@@ -267,9 +267,10 @@ void Renderer::DrawOverlay(View& view, const ViewParameters& parameters, double 
       facts.longitude_deg = eye.longitude_deg;
       facts.height_m = eye.height_m;
       facts.height_above_ground_m = terrain.height_above_ground_m;
+      if (parameters.pages) facts.layer_pages = view.channel->terrain_lists.front().layer_pages;
       facts.notices = notices_;
       view.hud.Clear();
-      AddHud(HudLines(facts), view.hud);
+      AddHud(HudTextOf(facts), view.hud);
     }
     view.overlay.Append(view.hud);
   }

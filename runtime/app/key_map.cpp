@@ -32,6 +32,7 @@ constexpr std::pair<std::string_view, std::string_view> kStockKeys[] = {
     {"PageUp", "orbit 0 5"},
     {"t", "tint next"},
     {"u", "toggle volumes"},
+    {"i", "toggle pages"},
     {"c", "toggle frozen"},
     {"1", "layer 1 toggle"},
     {"2", "layer 2 toggle"},

@@ -149,6 +149,7 @@ void ViewPilot::ApplySwitches(const Command& command) {
       case ViewSwitch::kSky: sky_ = !sky_; break;
       case ViewSwitch::kWireframe: wireframe_ = !wireframe_; break;
       case ViewSwitch::kVolumes: volumes_ = !volumes_; break;
+      case ViewSwitch::kPages: pages_ = !pages_; break;
       case ViewSwitch::kFrozen: frozen_ = !frozen_; break;
     }
   }
@@ -239,6 +240,7 @@ ViewParameters ViewPilot::Parameters(uint64_t number, double time_s, double utc_
   view.sky = sky_;
   view.wireframe = wireframe_;
   view.volumes = volumes_;
+  view.pages = pages_;
   view.tint = tint_;
   view.frozen = frozen_;
   return view;

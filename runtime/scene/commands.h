@@ -64,7 +64,7 @@ struct ErrorBoundCommand {
 struct ScaleErrorBoundCommand {
   double factor = 1;
 };
-enum class ViewSwitch : uint8_t { kHud, kLabels, kObjects, kSymbols, kSky, kWireframe, kVolumes, kFrozen };
+enum class ViewSwitch : uint8_t { kHud, kLabels, kObjects, kSymbols, kSky, kWireframe, kVolumes, kPages, kFrozen };
 struct ToggleCommand {
   ViewSwitch what = ViewSwitch::kHud;
 };

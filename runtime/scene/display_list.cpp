@@ -19,6 +19,7 @@ void DisplayList::Clear() {
   terrain_draws.clear();
   instances.clear();
   labels.clear();
+  layer_pages.clear();
   statistics = {};
 }
 

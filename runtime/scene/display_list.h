@@ -113,6 +113,15 @@ struct ObjectInstance {
   uint64_t object = 0;  // ObjectId, for picking and for tests
 };
 
+// How many pages of a layer a list has looked for, by where they are.
+struct LayerPages {
+  std::string layer;
+  uint32_t on_gpu = 0;     // images
+  uint32_t in_memory = 0;  // and not on the GPU, where terrain never is
+  uint32_t asked = 0;      // waiting for their server or being read
+  uint32_t failed = 0;
+};
+
 struct DisplayList {
   ViewId view = 0;
   uint64_t view_number = 0;  // ViewParameters::number it was built for
@@ -127,6 +136,8 @@ struct DisplayList {
   std::vector<TerrainDraw> terrain_draws;
   std::vector<ObjectInstance> instances;
   std::vector<std::string> labels;  // labels[0] is empty
+
+  std::vector<LayerPages> layer_pages;
 
   std::vector<PagePin> page_pins;
   std::vector<Residency*> gpu_pins;  // of pages in page_pins; unpinned by Clear

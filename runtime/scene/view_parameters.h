@@ -67,6 +67,7 @@ struct ViewParameters {
   bool sky = true;
   bool wireframe = false;
   bool volumes = false;  // bounding volumes of what is drawn
+  bool pages = false;    // where the pages of each layer are, in the heads-up display
   GroundTint tint = GroundTint::kNone;
   bool frozen = false;         // managers keep the cut that they have while the eye flies on
   glm::vec3 background{0.0F};  // linear RGB where nothing is drawn (seen with sky off)

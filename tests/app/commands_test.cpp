@@ -57,6 +57,7 @@ TEST(CommandTextTest, ReadsEveryForm) {
   EXPECT_EQ(Parsed<ScaleErrorBoundCommand>("error *0.8").factor, 0.8);
   EXPECT_EQ(Parsed<ToggleCommand>("toggle wireframe").what, ViewSwitch::kWireframe);
   EXPECT_EQ(Parsed<ToggleCommand>("toggle volumes").what, ViewSwitch::kVolumes);
+  EXPECT_EQ(Parsed<ToggleCommand>("toggle pages").what, ViewSwitch::kPages);
   EXPECT_EQ(Parsed<TintCommand>("tint level").tint, GroundTint::kLevel);
   EXPECT_EQ(Parsed<TintCommand>("tint next").tint, std::nullopt);
   EXPECT_EQ(Parsed<LayerCommand>("layer relief opacity=0.5").setting, "opacity=0.5");

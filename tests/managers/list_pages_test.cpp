@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 namespace belvedere {
 namespace {
 
@@ -116,6 +118,26 @@ TEST_F(ListPagesTest, AFailedPageIsNotWishedForAgain) {
   ListPages pages(paging_, kTerrain, list_);
   EXPECT_FALSE(pages.Want({kImagery, node_}, 5));
   EXPECT_EQ(pages.pages_waiting(), 0U);
+}
+
+TEST_F(ListPagesTest, TheListIsToldWhereThePagesOfEachLayerAre) {
+  PutImage(Quadcode::Root(0)).page().residency()->Place(1);
+  PutImage(Quadcode::Root(1));
+  paging_.cache.MarkFailed({kImagery, Quadcode::Root(3)}, Status::Error("damaged"));
+  ListPages pages(paging_, kTerrain, list_);
+  for (int tree = 0; tree < 4; ++tree) {
+    if (!pages.Slot({kImagery, Quadcode::Root(tree)})) pages.Want({kImagery, Quadcode::Root(tree)}, 1);
+  }
+  pages.Terrain(node_);  // not in memory, and not wanted
+  pages.Finish(kView, ListPages::Queues::kTerrain);
+  ASSERT_EQ(list_.layer_pages.size(), 2U);
+  EXPECT_EQ(list_.layer_pages[0].layer, "terrain");
+  EXPECT_EQ(list_.layer_pages[0].asked, 0U);
+  const LayerPages& imagery = list_.layer_pages[1];
+  EXPECT_EQ(imagery.layer, "imagery");
+  EXPECT_EQ(std::tie(imagery.on_gpu, imagery.in_memory, imagery.asked, imagery.failed), std::tuple(1U, 1U, 1U, 1U));
+  list_.Clear();
+  EXPECT_TRUE(list_.layer_pages.empty());
 }
 
 TEST_F(ListPagesTest, EachManagerSpeaksForItsOwnQueues) {

@@ -18,7 +18,7 @@ TEST(Hud, SaysWhatItWasGiven) {
   facts.longitude_deg = -118.25;
   facts.height_m = 12'300;
   facts.notices = {"elevation 3:01: checksum differs"};
-  const auto lines = HudLines(facts);
+  const std::vector<std::string> lines = HudTextOf(facts).lines;
   ASSERT_EQ(lines.size(), 5U);
   EXPECT_NE(lines[0].find("50 frames/s"), std::string::npos) << lines[0];
   EXPECT_NE(lines[1].find("error 2.0 px asked, 1.7 achieved"), std::string::npos) << lines[1];
@@ -35,13 +35,26 @@ TEST(Hud, SaysWhatIsHeldInPlaceOfWhatWasAsked) {
   facts.error_asked_px = 1;
   facts.error_held_px = 1.6;
   facts.error_achieved_px = 1.5;
-  EXPECT_NE(HudLines(facts)[1].find("error 1.0 px asked, holding 1.6"), std::string::npos) << HudLines(facts)[1];
+  EXPECT_NE(HudTextOf(facts).lines[1].find("error 1.0 px asked, holding 1.6"), std::string::npos)
+      << HudTextOf(facts).lines[1];
+}
+
+// Before the notices; what there is none of is not said.
+TEST(Hud, SaysWhereThePagesOfALayerAre) {
+  HudFacts facts;
+  facts.layer_pages = {{"terrain", 0, 412, 3, 0}, {"imagery", 30, 2, 0, 1}};
+  facts.notices = {"one"};
+  const HudText text = HudTextOf(facts);
+  ASSERT_EQ(text.lines.size(), 7U);
+  EXPECT_EQ(text.lines[4], "terrain:   412 in memory   3 asked for");
+  EXPECT_EQ(text.lines[5], "imagery:   30 on the GPU   2 in memory   1 failed");
+  EXPECT_EQ(text.first_notice, 6U);
 }
 
 TEST(Hud, BoundsItsNotices) {
   HudFacts facts;
   facts.notices.assign(100, std::string(10'000, 'x'));
-  const auto lines = HudLines(facts);
+  const std::vector<std::string> lines = HudTextOf(facts).lines;
   EXPECT_LE(lines.size(), 8U);
   EXPECT_LT(lines.back().size(), 200U);
 }
@@ -57,7 +70,7 @@ TEST(Hud, Lengths) {
 TEST(Hud, StandsInTheUpperLeftCornerOverEverything) {
   const Atlas atlas("/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf");
   OverlayBatch batch(atlas);
-  AddHud({"one line"}, batch);
+  AddHud({{"one line"}, 1}, batch);
   EXPECT_EQ(batch.vertices().size() % 4, 0U);
   EXPECT_GE(batch.vertices().size(), 4U * (1 + 7));
   for (const auto& vertex : batch.vertices()) {
