@@ -30,6 +30,7 @@ ReadModule OfHeights(const char* layer, PageKind kind, LayerRole role, const Rea
   module.layer = layer;
   module.kind = kind;
   module.role = role;
+  module.is_made = true;
   module.max_level = elevation.max_level;
   module.exists = elevation.exists;
   module.read = [draw = std::move(draw), type = elevation.type](ReadContext& context,
@@ -46,6 +47,7 @@ ReadModule OfQuadnodes(const char* layer, const ReadModule& terrain, DrawQuadnod
   ReadModule module;
   module.layer = layer;
   module.kind = PageKind::kColour;
+  module.is_made = true;
   module.max_level = terrain.max_level;
   module.exists = terrain.exists;
   module.read = [draw](ReadContext&, Quadcode node) -> Result<std::unique_ptr<Page>> {

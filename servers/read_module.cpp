@@ -60,8 +60,8 @@ const ReadModule* ModuleRegistry::Find(std::string_view layer) const {
 LayerTable MakeLayerTable(const ModuleRegistry& registry) {
   LayerTable table;
   for (const ReadModule& module : registry.modules()) {
-    const DataType type =
-        table.Add({module.layer, module.kind, 0, module.max_level, module.exists, module.role, module.step, {}});
+    const DataType type = table.Add(
+        {module.layer, module.kind, 0, module.max_level, module.exists, module.role, module.step, {}, module.is_made});
     BELVEDERE_CHECK(type == module.type);
   }
   return table;

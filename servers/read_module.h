@@ -63,6 +63,7 @@ struct ReadModule {
   PageKind kind = PageKind::kElevation;
   int max_level = 0;
   LayerRole role = LayerRole::kColour;  // of an image layer
+  bool is_made = false;                 // Layer::is_made
   std::optional<StepOf> step;           // of a layer that changes with the time; that of the layer's name comes first
   // Whether there is a page; the four children of a quadnode exist together or not at all.
   std::function<bool(Quadcode)> exists;

@@ -98,7 +98,10 @@ Result<std::vector<NamedLayer>> LayersOf(const std::vector<std::string>& texts, 
     const auto add = [&](const Layer& layer) {
       if (layers.size() < kMaxImageLayers) layers.push_back({layer.name, LayerUse{layer.type, layer.role}});
     };
-    if (const Layer* colour = table.FirstOf(PageKind::kColour)) add(*colour);
+    const auto colour = std::find_if(table.layers().begin(), table.layers().end(), [](const Layer& layer) {
+      return layer.kind == PageKind::kColour && !layer.is_made;
+    });
+    if (colour != table.layers().end()) add(*colour);
     for (const Layer& layer : table.layers()) {
       if (IsImage(layer) && layer.role == LayerRole::kMultiply) add(layer);
     }

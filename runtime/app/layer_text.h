@@ -21,8 +21,8 @@ struct NamedLayer {
   LayerUse use;
 };
 
-// The image layers of the table that the texts name, in that order. With no texts: the first colour layer and every one
-// that multiplies it. A Status where a layer is not known, is named twice, or its text is wrong.
+// The image layers of the table that the texts name, in that order. With no texts: the first colour layer of the
+// dataset and every one that multiplies it. A Status where a layer is not known, is named twice, or its text is wrong.
 Result<std::vector<NamedLayer>> LayersOf(const std::vector<std::string>& texts, const LayerTable& table);
 
 // Changes `use` as one setting says ("opacity=0.5", "off").

@@ -48,6 +48,7 @@ struct Layer {
   LayerRole role = LayerRole::kColour;  // of an image layer, unless a view says otherwise
   std::optional<StepOf> step{};         // it is one of several
   std::vector<LayerStep> steps{};       // of the one that stands for all; filled by LayerTable
+  bool is_made = false;  // by a read module, from other pages or from nothing: shown where it is asked for
   // Whether a user may name it: it is no step, or the one that stands for all.
   bool is_whole() const { return !step || step->layer == name; }
 };

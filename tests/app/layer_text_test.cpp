@@ -57,6 +57,19 @@ TEST(LayerText, MistakesAreNamed) {
   EXPECT_NE(message({"a", "b", "c", "d", "e", "f", "g"}).find("at most 6"), std::string::npos);
 }
 
+TEST(LayerText, WithoutImageryOnlyTheReliefIsShown) {
+  LayerTable table;
+  const auto all = [](Quadcode) { return true; };
+  Layer grid{"grid", PageKind::kColour, 0, 5, all};
+  grid.is_made = true;
+  table.Add(grid);
+  table.Add({"relief", PageKind::kOverlay, 0, 5, all, LayerRole::kMultiply});
+  const auto layers = LayersOf({}, table);
+  ASSERT_EQ(layers->size(), 1U);
+  EXPECT_EQ((*layers)[0].name, "relief");
+  EXPECT_EQ(LayersOf({"grid"}, table)->size(), 1U) << "by its name it can be had";
+}
+
 TEST(LayerText, ALayerWithStepsIsOne) {
   LayerTable table;
   for (const char* name : {"seasons", "seasons@2004-07-01T00:00:00Z"}) {
