@@ -64,8 +64,9 @@ struct GroundBox {
 };
 
 struct Measure {
-  double error_scale = 0;  // see CutNode
-  double metre_px = 0;     // pixels that one metre across the line of sight spans, at the quadnode's nearest point
+  double error_scale = 0;       // see CutNode
+  double greatest_stretch = 0;  // likewise
+  double metre_px = 0;          // pixels that one metre across the line of sight spans, at the quadnode's nearest point
   double nearest_depth_m = 0;
   double texel_share = 1;     // of a texel's size that counts where the ground is seen at a slant
   double error_metre_px = 0;  // pixels that one metre of vertical error spans there, at most
@@ -200,6 +201,7 @@ class Selection {
     drawn.node = branch.node;
     drawn.page = branch.page;
     drawn.error_scale = measure.error_scale * measure.share;
+    drawn.greatest_stretch = measure.greatest_stretch;
     drawn.nearest_depth_m = measure.nearest_depth_m;
     drawn.finest = branch.geometry_ratio <= 1.0;
     drawn.visible = measure.share >= 1.0;
@@ -328,7 +330,8 @@ class Selection {
     nearest_depth = std::max(nearest_depth, sight_.cos_corner * nearest);
     measure.nearest_depth_m = nearest_depth;
     measure.metre_px = matrices_.pixels_per_radian / nearest_depth;
-    measure.error_scale = matrices_.pixels_per_radian * GreatestStretch(page, center, up);
+    measure.greatest_stretch = GreatestStretch(page, center, up);
+    measure.error_scale = matrices_.pixels_per_radian * measure.greatest_stretch;
     measure.error_metre_px = measure.error_scale / nearest_depth;
     measure.texel_share = std::sqrt(GreatestSlant(page, nearest));
     return measure;

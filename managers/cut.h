@@ -12,9 +12,9 @@
 //     e * pixels_per_radian * g / z,   g = |(u_x, u_y) - (x, y) u_z / z|
 // with x, y, z its place and u_x, u_y, u_z the vertical in camera axes, z along the line of view. g is convex in (x, y)
 // / z, so its greatest value over a quadnode is at a corner of what the quadnode covers of the picture; each quadnode
-// takes that once, as error_scale. z is taken anew for every vertex (surface_mesh.h). What is out of sight, quadnodes
-// and triangles within them (post_selection.h), keeps a share of its error, so that turning the head does not start
-// from nothing.
+// takes that once, as error_scale. z, and g where it is less, are taken anew for every post (post_selection.h). What is
+// out of sight, quadnodes and triangles within them (likewise), keeps a share of its error, so that turning the head
+// does not start from nothing.
 //
 // Steps. Where a layer has gone on to another of its steps (step_change.h), a quadnode shows the step before until the
 // image of the new one that suits it is on the GPU, or one as fine as that of the step before: nothing coarser is
@@ -68,10 +68,11 @@ struct CutNode {
   std::array<double, kFadingLayers> fade_until_s{};
   // Screen-space error of e metres at depth z: perspective e * error_scale / z, orthographic e * error_scale.
   double error_scale = 0;
-  double nearest_depth_m = 0;  // no point of the quadnode is nearer to the eye along the line of view
-  bool finest = true;          // page->error_m is within the bound: drawing all posts keeps it
-  float left_over_px = 0;      // error of what page->error_m leaves, where not `finest`
-  bool visible = true;         // in the frustum and before the horizon
+  double greatest_stretch = 0;  // g in error_scale; 0: none, error_scale is for every post, as in an orthographic view
+  double nearest_depth_m = 0;   // no point of the quadnode is nearer to the eye along the line of view
+  bool finest = true;           // page->error_m is within the bound: drawing all posts keeps it
+  float left_over_px = 0;       // error of what page->error_m leaves, where not `finest`
+  bool visible = true;          // in the frustum and before the horizon
 };
 
 struct CutLimits {

@@ -3,6 +3,7 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace belvedere {
@@ -13,6 +14,18 @@ constexpr uint16_t kNoVertex = 0xFFFF;
 constexpr bool IsBorderPost(int post) {
   const int column = post % kPosts;
   return column == 0 || column == kCells || post < kPosts || post >= kCells * kPosts;
+}
+
+// Greatest tangent of the angle to the line of view at which anything of the quadnode is seen.
+double GreatestTangent(const TerrainPage& page, const Sight& sight) {
+  const double of_corner = std::sqrt(1.0 / (sight.cos_corner * sight.cos_corner) - 1.0);
+  const glm::dvec3 center_m = page.center_ecef - sight.eye_ecef;
+  const double depth_m = glm::dot(center_m, sight.forward_ecef);
+  if (depth_m <= page.radius_m) return of_corner;
+  const double distance_m = glm::length(center_m);
+  const double middle = std::sqrt(std::max(0.0, distance_m * distance_m - depth_m * depth_m)) / depth_m;
+  // As far from its middle, on the plane at depth 1, as the sphere's points may lie.
+  return std::min(of_corner, middle + page.radius_m * distance_m / (depth_m * (depth_m - page.radius_m)));
 }
 
 }  // namespace
@@ -41,11 +54,16 @@ double KeptTriangles::GrowthOfError(const Kept& kept, const CutNode& node, const
   if (kept.error_scale == 0) return kNever;
   const double growth = node.error_scale / kept.error_scale;
   if (!sight.perspective) return growth;
-  const double farthest_m = glm::distance(node.page->center_ecef, sight.eye_ecef) + node.page->radius_m;
-  const double nearer_m = glm::distance(sight.eye_ecef, kept.sight.eye_ecef) +
-                          glm::distance(sight.forward_ecef, kept.sight.forward_ecef) * farthest_m;
-  if (nearer_m >= kept.nearest_depth_m) return nearer_m == 0 ? growth : kNever;
-  return growth * kept.nearest_depth_m / (kept.nearest_depth_m - nearer_m);
+  const double moved_m = glm::distance(sight.eye_ecef, kept.sight.eye_ecef);
+  if (moved_m > kKeepMargin * kept.nearest_depth_m) return kNever;
+  const double nearer = moved_m == 0 ? 1.0 : kept.nearest_depth_m / (kept.nearest_depth_m - moved_m);
+  const double turned = glm::distance(sight.forward_ecef, kept.sight.forward_ecef);
+  const double turning = turned * GreatestTangent(*node.page, sight);
+  const double deeper = 1.0 + turning;
+  if (node.greatest_stretch == 0) return growth * nearer * deeper;
+  const double stretch = deeper / (1.0 - turning - 0.5 * turned * turned);
+  if (stretch < 0 || stretch > 1.0 + kKeepMargin) return kNever;
+  return growth * nearer * deeper * std::max(1.0, stretch * kept.greatest_stretch / node.greatest_stretch);
 }
 
 void KeptTriangles::Choose(Kept& kept, const CutNode& node, const Sight& sight, const Frame& frame, double error_px) {
@@ -57,6 +75,7 @@ void KeptTriangles::Choose(Kept& kept, const CutNode& node, const Sight& sight, 
   kept.page = node.page;
   kept.sight = sight;
   kept.error_scale = node.error_scale;
+  kept.greatest_stretch = node.greatest_stretch;
   kept.nearest_depth_m = node.nearest_depth_m;
   kept.error_px = error_px;
   kept.finest = node.finest;

@@ -1,10 +1,17 @@
 // Kept triangles: what post selection chose for a quadnode, kept from list to list for as long as it holds.
 //
-// Triangles are chosen a little finer than asked, by kKeepMargin. While the eye comes nearer by less than that, seen
-// from the quadnode, and does not turn too far, they keep the bound: for a point at depth z when they were chosen, the
-// depth now is at least
-//     z - |eye moved| - |line of view turned| * (farthest distance of the quadnode),
-// and z is at least the quadnode's nearest depth then.
+// Triangles are chosen a little finer than asked, by kKeepMargin, and are kept while errors surely have not grown by
+// more. What the eye's moving by d does to g (cut.h) is in the choice already, as long as d is within kKeepMargin of
+// the quadnode's nearest depth. What is left, for a point of depth z when they were chosen and z' now:
+//     The eye moves: depth is at least z - d then, and z at least the nearest depth.
+//     The line of view then turns by an angle a from f to f', t = |f' - f|. At a tangent T from f' the cosine of the
+//     angle between f and what is seen is at most cos a + T sin a <= 1 + T t of what it is to f': so z' >= (z - d) / (1
+//     + T t), and T is at most the greatest of what is seen of the quadnode. g = |f x m| / cosine, m normal to the line
+//     of sight. |f x m| is the sine of an angle whose cotangent is no greater than T at f', hence at least cos a - T
+//     sin a >= 1 - t^2 / 2 - T t of |f' x m|: g grows by (1 + T t) / (1 - t^2 / 2
+//     - T t) at most. Where the quadnode's greatest g was taken, what that has become bounds it too.
+// The order is no matter: t and d say where the eye has come from, not how. W of post_selection.h is kKeepMargin wider
+// than the picture for what is seen at T now and was before the turn.
 //
 // What is left out because it lies beside the picture stays left out as long as it surely lies there
 // (post_selection.h).
@@ -23,8 +30,6 @@
 #include <vector>
 
 namespace belvedere {
-
-inline constexpr double kKeepMargin = 0.02;
 
 // The triangles of one quadnode, between the vertices of the posts that they use.
 struct KeptMesh {
@@ -68,6 +73,7 @@ class KeptTriangles {
     const TerrainPage* page = nullptr;
     Sight sight;
     double error_scale = 0;
+    double greatest_stretch = 0;
     double nearest_depth_m = 0;
     double error_px = 0;
     bool finest = true;

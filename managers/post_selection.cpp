@@ -10,6 +10,9 @@ namespace {
 
 constexpr float kAlwaysDrawn_m = 12'000.0F;  // delta value from which a post is drawn whatever the view
 constexpr float kLeastDepth_m = 1e-3F;
+// The ellipsoid's radii of curvature, 6335 to 6400 km, are this one but for kCurvatureSpread of it.
+constexpr double kCurvature_m = 6'367'400.0;
+constexpr double kCurvatureSpread = 0.006;
 
 constexpr int kSouthWest = Post{0, 0}.index();
 constexpr int kSouthEast = Post{kCells, 0}.index();
@@ -28,6 +31,10 @@ struct PostSelection::LocalView {
   float scale;                         // error in metres times this is the least depth at which it keeps the bound
   float nearest_depth_m;               // CutNode::nearest_depth_m
   float left_over_m;                   // what the quadnode leaves whatever is drawn
+  float greatest_stretch;              // CutNode::greatest_stretch
+  float widest;                        // W of the header
+  float moved_m;                       // as far may the eye move
+  float tilt;                          // by which the vertical of a post may be wrong, radians
   std::array<glm::vec3, 4> inwards{};  // Sight::inwards_ecef of the sides beyond which some of the quadnode may lie
   size_t sides = 0;                    // of those
 
@@ -39,12 +46,39 @@ struct PostSelection::LocalView {
         perspective(sight.perspective),
         scale(static_cast<float>(node.error_scale / error_px)),
         nearest_depth_m(static_cast<float>(node.nearest_depth_m)),
-        left_over_m(node.finest ? 0.0F : page.error_m) {
+        left_over_m(node.finest ? 0.0F : page.error_m),
+        greatest_stretch(static_cast<float>(node.greatest_stretch)),
+        widest(static_cast<float>((1.0 + kKeepMargin) / sight.cos_corner)),
+        moved_m(static_cast<float>(kKeepMargin * node.nearest_depth_m)),
+        tilt(static_cast<float>(GreatestTilt(page, frame))) {
     if (!perspective || !node.visible) return;
     for (const glm::dvec3& inward_ecef : sight.inwards_ecef) {
       const double least_m = glm::dot(page.center_ecef - sight.eye_ecef, inward_ecef) - page.radius_m;
       if (least_m < 0) inwards[sides++] = glm::vec3(inward_ecef * frame.ecef_from_frame);
     }
+  }
+
+  // Of the ellipsoid's verticals from those of the sphere, which are a little short where the ground is below it.
+  static double GreatestTilt(const TerrainPage& page, const Frame& frame) {
+    const double from_origin_m = glm::distance(page.center_ecef, frame.origin_ecef) + page.radius_m;
+    return (kCurvatureSpread * from_origin_m - std::min(0.0, double{page.min_height_m})) / kCurvature_m;
+  }
+
+  // Greatest g over the triangles that the post splits, as a share of the quadnode's.
+  float ShareOfGreatest(int post, int level) const {
+    const float spread_m = page.spread_m[static_cast<size_t>(level)];
+    const TerrainVertex& vertex = page.vertices[static_cast<size_t>(post)];
+    const glm::vec3 place(vertex.x, vertex.y, vertex.z);
+    const glm::vec3 away = place - eye;
+    const float depth_m = glm::dot(away, forward);
+    if (depth_m <= 0) return 1;
+    constexpr auto kPerMetre = static_cast<float>(1.0 / kCurvature_m);
+    const glm::vec3 up = glm::vec3(0, 0, 1) + place * kPerMetre;
+    const float along = glm::dot(up, forward);
+    const float here_m = glm::length(up * depth_m - along * away);
+    const float around_m = std::abs(along) * widest * (spread_m + moved_m);
+    const float stretch = (here_m + around_m) / depth_m + widest * (spread_m * kPerMetre + tilt);
+    return std::min(1.0F, stretch / greatest_stretch);
   }
 
   // All triangles that the post splits lie beside the picture, and well so.
@@ -125,6 +159,7 @@ void PostSelection::Test(Post post, int level, const LocalView& view) {
   const float stay = state == kDrawnBefore ? stay_ : 1.0F;
   if (error * stay > least_depth_m && view.perspective) least_depth_m = view.LeastDepth(post.index(), level);
   least_depth_m = std::max(least_depth_m, kLeastDepth_m);
+  if (error * stay > least_depth_m && view.greatest_stretch > 0) error *= view.ShareOfGreatest(post.index(), level);
   if (error * stay > least_depth_m && view.sides > 0 && view.IsBeside(post.index(), level)) {
     error *= static_cast<float>(kShareBesidePicture);
     left_out_beside_ |= error * stay <= least_depth_m;

@@ -7,6 +7,16 @@
 // edge to edge. A post is looked at once, and only when a triangle that it would split exists: the work is proportional
 // to what is drawn.
 //
+// Slant. A quadnode's error_scale has the greatest g (cut.h) over all of it; each post takes the greatest over the
+// triangles that it splits where that is less. With u and a the vertical at the post and its place from the eye, z its
+// depth and f the line of view, g there is |u - (u.f) a / z|. Let p be another point, s away from the post, seen from
+// an eye that has moved by d: it is seen at w = (a + s - d) / (z + (s - d).f), from which w - a / z = ((s - d) - w (s -
+// d).f) / z. So with r the most that |s| and |d| are together and W the most that |w| is in the picture,
+//     g <= |u - (u.f) a / z| + |u.f| W r / z + W |change of u|.
+// Verticals are taken to be those of a sphere through the frame's origin, which change by s over its radius; how far
+// those of the ellipsoid are from them is added. All this is for any eye within kKeepMargin of the nearest depth, so
+// that triangles can be kept (kept_triangles.h). It is a bound for what is seen; what is not has no g that matters.
+//
 // Triangles that lie beside the picture, and by more than kBesideGuard away from it, need keep their error under a
 // looser bound only: kShareBesidePicture of it counts. They lie there as well for any later eye, whose picture's sides
 // have turned, and which has come nearer by a share of the least distance, by no more than kBesideGuard together.
@@ -29,6 +39,8 @@ struct PostTriangle {
   uint16_t a, b, c;  // posts; right angle at a, counter-clockwise seen from above
 };
 
+// By what share of its nearest depth the eye may move while a choice is kept, and errors may grow.
+inline constexpr double kKeepMargin = 0.02;
 inline constexpr double kBesideGuard = 0.05;  // sine of an angle
 
 class PostSelection {

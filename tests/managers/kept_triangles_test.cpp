@@ -93,6 +93,51 @@ TEST_F(KeptTrianglesTest, KeepTheBoundAlongAFlight) {
   EXPECT_LT(kept_.chosen(), 100U);
 }
 
+// Straight over the ground, where a slant changes most for its size when the eye moves, and aside of the line of view,
+// where it does when that turns: no shift along the vertical is seen larger than the bound, in what is kept as in what
+// is chosen.
+TEST_F(KeptTrianglesTest, KeepEveryPointWithinTheBound) {
+  constexpr double kHeight_m = 120'000, kFar_m = 2'000'000;
+  std::mt19937 random(4);
+  std::normal_distribution<double> chance;
+  const auto any = [&] { return glm::dvec3(chance(random), chance(random), chance(random)); };
+  node_.greatest_stretch = 1 / sight_.cos_corner;
+  uint64_t kept = 0;
+  double largest_px = 0;
+  for (int flight = 0; flight < 16; ++flight) {
+    const bool turns = flight % 2 == 0;
+    const double height_m = turns ? kFar_m : kHeight_m;
+    const double pixels_per_radian = 0.02 * height_m;  // so that fine posts matter, whose own size does not
+    node_.error_scale = pixels_per_radian * node_.greatest_stretch;
+    sight_.eye_ecef = ToEcef({37 + 0.1 * chance(random), -118 + 0.1 * chance(random), height_m});
+    const glm::dvec3 middle_m = page_->center_ecef - sight_.eye_ecef;
+    sight_.forward_ecef =
+        glm::normalize(middle_m + (turns ? 0.75 : 0.05) * height_m * glm::normalize(glm::cross(middle_m, any())));
+    // A turn alone must not live on what is there for movement.
+    node_.nearest_depth_m = turns ? 1'000 : sight_.cos_corner * (height_m - 15'000);
+    const glm::dvec3 along_m = (turns ? 0.0 : 200.0) * any();
+    const glm::dvec3 turn = (turns ? 4e-3 : 0.0) * (sight_.forward_ecef - glm::normalize(middle_m));
+    for (int step = 0; step < 12; ++step) {
+      sight_.eye_ecef += along_m;
+      sight_.forward_ecef = glm::normalize(sight_.forward_ecef + turn);
+      const KeptTriangles::Choice choice = Next();
+      kept += choice.is_new ? 0 : 1;
+      const auto post = [&](uint16_t vertex) { return static_cast<int>(choice.mesh->vertices[vertex].post()); };
+      for (const auto* triangles : {&choice.mesh->inner, &choice.mesh->at_border}) {
+        for (const auto& [a, b, c] : *triangles) {
+          const double error_px =
+              test::SeenErrorOfTriangle_px(*page_, {post(a), post(b), post(c)}, sight_, pixels_per_radian);
+          ASSERT_LE(error_px, choice.worst * kErrorPx * 1.0001);
+          largest_px = std::max(largest_px, error_px);
+        }
+      }
+      ASSERT_LE(choice.worst, 1.0 + 1e-6);
+    }
+  }
+  EXPECT_GT(kept, 50U);
+  EXPECT_GT(largest_px, 0.95 * kErrorPx);
+}
+
 TEST_F(KeptTrianglesTest, AreChosenAnewForAnotherPageBoundOrPlace) {
   Next();
   std::mt19937 random(3);

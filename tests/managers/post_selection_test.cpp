@@ -63,6 +63,49 @@ TEST(PostSelection, NoTriangleIsOverTheBoundAnywhere) {
   EXPECT_GT(whole, 500U);
 }
 
+// From wherever the eye looks, near and far, at whatever slant; and with far fewer triangles than for the greatest g
+// that there is anywhere.
+TEST(PostSelection, ShiftsAlongTheVerticalKeepTheBound) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  size_t by_post = 0, by_quadnode = 0;
+  double largest_px = 0;
+  for (int eye = 0; eye < 40; ++eye) {
+    const auto page =
+        FlatPage(Quadcode::Containing(75 * unit(random), 170 * unit(random), 1 + eye % 10), RandomDeltas(random));
+    const double size_m = page->radius_m;
+    const GeoBox box = page->node.Box();
+    const double size_deg = page->node.SizeDegrees();
+    const auto near = [&](double middle_deg, double share) { return middle_deg + share * size_deg * unit(random); };
+    const Geodetic place{near(0.5 * (box.south_deg + box.north_deg), 0.7),
+                         near(0.5 * (box.west_deg + box.east_deg), 0.7), size_m * std::exp2(2 * unit(random))};
+    Sight sight;
+    sight.eye_ecef = ToEcef(place);
+    sight.forward_ecef = glm::normalize(page->center_ecef - sight.eye_ecef +
+                                        0.7 * size_m * glm::dvec3(unit(random), unit(random), unit(random)));
+    sight.cos_corner = 0.7;
+    const double pixels_per_radian = 0.01 * place.height_m;  // delta values are not larger where quadnodes are
+    CutNode node;
+    node.node = page->node;
+    node.page = page.get();
+    node.greatest_stretch = 1 / sight.cos_corner;
+    node.error_scale = pixels_per_radian * node.greatest_stretch;
+    std::vector<PostTriangle> triangles, coarser;
+    PostSelection().Run(node, sight, FrameOf(page->node), kErrorPx, {}, 1.0F, triangles);
+    for (const auto& [a, b, c] : triangles) {
+      const double error_px = test::SeenErrorOfTriangle_px(*page, {a, b, c}, sight, pixels_per_radian);
+      ASSERT_LE(error_px, kErrorPx * 1.001) << page->node.level();
+      largest_px = std::max(largest_px, error_px);
+    }
+    by_post += triangles.size();
+    node.greatest_stretch = 0;
+    PostSelection().Run(node, sight, FrameOf(page->node), kErrorPx, {}, 1.0F, coarser);
+    by_quadnode += coarser.size();
+  }
+  EXPECT_GT(largest_px, 0.97 * kErrorPx);
+  EXPECT_LT(by_post, 0.85 * static_cast<double>(by_quadnode));
+}
+
 // The fewest: a post is drawn because its own triangles ask for it, or because one that depends on it is drawn.
 TEST(PostSelection, DrawsNoPostWithoutAReason) {
   const Scene scene(2);

@@ -8,6 +8,8 @@
 
 #include <glm/geometric.hpp>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <random>
 #include <unordered_map>
@@ -64,6 +66,37 @@ inline std::unique_ptr<TerrainPage> FlatPage(Quadcode node, std::vector<float> d
   MeasureSpread(*page, kCells, kCells * kPosts + kCells, 0, 0);
   MeasureSpread(*page, kCells * kPosts, 0, kCells * kPosts + kCells, 0);
   return page;
+}
+
+// Screen-space error of the post's delta value, were it a shift of the post `where` along the vertical there, found by
+// shifting it; 0 where that is not in a round picture of that corner.
+inline double SeenError_px(const TerrainPage& page, int post, int where, const Sight& sight, double pixels_per_radian) {
+  constexpr double kShift_m = 0.1;
+  const TerrainVertex& v = page.vertices[static_cast<size_t>(where)];
+  const glm::dvec3 ecef = FrameOf(page.node).ToEcef({v.x, v.y, v.z});
+  const Geodetic place = ToGeodetic(ecef);
+  const auto seen_at = [&](const glm::dvec3& point) {
+    const glm::dvec3 away = point - sight.eye_ecef;
+    return away / glm::dot(away, sight.forward_ecef);
+  };
+  const glm::dvec3 away = ecef - sight.eye_ecef;
+  if (glm::dot(away, sight.forward_ecef) < sight.cos_corner * glm::length(away)) return 0;
+  const glm::dvec3 shifted = ecef + kShift_m * UpAt(place.latitude_deg, place.longitude_deg);
+  return page.deltas[static_cast<size_t>(post)] * pixels_per_radian * glm::distance(seen_at(shifted), seen_at(ecef)) /
+         kShift_m;
+}
+
+// The largest of the triangle's corners and the middle of its hypotenuse, of the post that would split it; 0 for what
+// is as small as triangles get.
+inline double SeenErrorOfTriangle_px(const TerrainPage& page, const std::array<int, 3>& posts, const Sight& sight,
+                                     double pixels_per_radian) {
+  const auto [a, b, c] = posts;
+  if ((b % kPosts + c % kPosts) % 2 != 0 || (b / kPosts + c / kPosts) % 2 != 0) return 0;
+  const int middle = (b + c) / 2;
+  double largest = 0;
+  for (const int where : {a, b, c, middle})
+    largest = std::max(largest, SeenError_px(page, middle, where, sight, pixels_per_radian));
+  return largest;
 }
 
 // A random cut of the whole Earth: roots split again and again at random, down to `deepest`.
