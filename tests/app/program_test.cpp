@@ -186,7 +186,7 @@ TEST(ProgramTest, TourReportsEveryPromisedField) {
   std::string line;
   ASSERT_TRUE(std::getline(lines, line));
   EXPECT_EQ(line.find("frame,view,time_s,frame_ms,"), 0U);
-  std::map<int, std::set<int>> views_of_frame;  // the first frame and the last may have one view only
+  std::map<int, std::set<int>> views_of_frame;  // a view that has not changed is not drawn
   while (std::getline(lines, line)) {
     std::istringstream words(line);
     int frame = 0, view = 0;
@@ -195,8 +195,10 @@ TEST(ProgramTest, TourReportsEveryPromisedField) {
     EXPECT_TRUE(views_of_frame[frame].insert(view).second) << line;
   }
   EXPECT_EQ(views_of_frame.size(), json["frames"].get<size_t>());
-  const std::set<int> ends{views_of_frame.begin()->first, views_of_frame.rbegin()->first};
-  for (const auto& [frame, views] : views_of_frame) EXPECT_TRUE(views.size() == 2 || ends.contains(frame)) << frame;
+  const auto both = std::count_if(views_of_frame.begin(), views_of_frame.end(), [](const auto& frame) {
+    return frame.second == std::set<int>{1, 2};
+  });
+  EXPECT_GT(2 * static_cast<size_t>(both), views_of_frame.size());
   std::remove(csv.c_str());
   std::remove(path.c_str());
   std::remove(report.c_str());
