@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Measures what the terrain promises (docs/performance.md) and prints it as a table, each row with its limit.
 
-    bench_terrain.py BUILD DATASET TOUR.csv [--quick]
+    bench_terrain.py BIN DATASET TOUR.csv [--quick]
 
-BUILD holds the programs of a release build (build/bin), DATASET and TOUR.csv are those of ./demo. All of it takes three
+BIN holds the programs of a release build (build/bin), DATASET and TOUR.csv are those of ./demo. All of it takes three
 quarters of an hour, --quick a few minutes: fewer poses and jumps, the first 90 s of the tour, a flight of 6 minutes.
 Exits 1 when a program fails; a limit that is not kept is marked and is no failure, for machines differ.
 """
@@ -24,14 +24,14 @@ class Problem(Exception):
 
 class Bench:
     def __init__(self, options):
-        self.build = pathlib.Path(options.build)
+        self.bin = pathlib.Path(options.bin)
         self.dataset = options.dataset
         self.tour = options.tour
         self.quick = options.quick
         self.rows = []
 
     def run(self, program, *arguments):
-        command = [str(self.build / program), *map(str, arguments)]
+        command = [str(self.bin / program), *map(str, arguments)]
         print("bench_terrain:", " ".join(command), file=sys.stderr, flush=True)
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         # Some programs exit 1 where a limit of their own is not kept; what they print is what counts.
@@ -101,7 +101,7 @@ class Bench:
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("build")
+    parser.add_argument("bin")
     parser.add_argument("dataset")
     parser.add_argument("tour")
     parser.add_argument("--quick", action="store_true")
