@@ -14,7 +14,7 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr double kPausePerBusy = 2.0;  // a step that takes long comes less often: a third of one core at most
+constexpr double kPausePerBusy = 1.0;  // a step that takes long comes less often: half of one core at most
 
 // What the thread has had of a core, so that a step that others kept waiting is not taken for a long one.
 double CpuSeconds() {

@@ -1,5 +1,5 @@
 // PacedThread: runs a step again and again on a thread of its own, at most so many times a second and never busy for
-// more than a third of the time, until destroyed.
+// more than half of the time, until destroyed.
 //
 // Threads: constructed and destroyed by one thread; destroying waits for the step that is running, and for no pause.
 #pragma once
