@@ -5,13 +5,15 @@
 // their corner agree on it along the meridian and along the parallel, since the finest of them always has it in a
 // corner.
 //
-// A corner names a vertex by its quadnode: (number of the quadnode in the cut) << 15 | number among the quadnode's own.
+// A corner names a vertex by its quadnode: (number of the quadnode in the cut) << 15 | number among the quadnode's own,
+// packed as ListVertex::place is.
 //
 // Units: positions in grid units (quadcode.h).
 // Threads: one.
 #pragma once
 
 #include "runtime/earth/quadcode.h"
+#include "runtime/scene/display_list.h"
 
 #include <cstdint>
 #include <span>
@@ -21,15 +23,15 @@ namespace belvedere {
 
 enum class Border : uint8_t { kWest, kEast, kSouth, kNorth };
 
-inline constexpr uint32_t kOwnVertexBits = 15;
+// A quadnode has no more vertices than posts: they fit in as many bits.
 constexpr uint32_t CornerOf(uint32_t node, uint32_t own_vertex) {
-  return node << kOwnVertexBits | own_vertex;
+  return ListVertex::PlaceOf(node, own_vertex);
 }
 constexpr uint32_t NodeOf(uint32_t corner) {
-  return corner >> kOwnVertexBits;
+  return corner >> ListVertex::kPostBits;
 }
 constexpr uint32_t OwnVertexOf(uint32_t corner) {
-  return corner & ((1U << kOwnVertexBits) - 1U);
+  return corner & ListVertex::kPostMask;
 }
 
 struct BorderVertex {

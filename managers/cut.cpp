@@ -291,17 +291,7 @@ class Selection {
   }
 
   static ImageUse SubRectangle(int slot, DataType type, Quadcode source, Quadcode node) {
-    const int levels = node.level() - source.level();
-    const double scale = std::ldexp(1.0, -levels);
-    const auto across = (int64_t{1} << levels) - 1;
-    ImageUse use;
-    use.slot = slot;
-    use.source = source;
-    use.type = type;
-    use.scale = static_cast<float>(scale);
-    use.offset_u = static_cast<float>(static_cast<double>(node.column() & across) * scale);
-    use.offset_v = static_cast<float>(static_cast<double>(node.row() & across) * scale);
-    return use;
+    return PartOf({.slot = slot, .source = source, .type = type}, source, node);
   }
 
   Measure MeasureOf(const TerrainPage& page) const {
@@ -388,6 +378,17 @@ class Selection {
 };
 
 }  // namespace
+
+ImageUse PartOf(const ImageUse& image, Quadcode node, Quadcode descendant) {
+  const int levels = descendant.level() - node.level();
+  const auto across = (int64_t{1} << levels) - 1;
+  const auto scale = static_cast<float>(std::ldexp(1.0, -levels));
+  ImageUse part = image;
+  part.offset_u += image.scale * scale * static_cast<float>(descendant.column() & across);
+  part.offset_v += image.scale * scale * static_cast<float>(descendant.row() & across);
+  part.scale *= scale;
+  return part;
+}
 
 Sight SightOf(const ViewParameters& view, const glm::dvec3& eye_ecef) {
   const double tan_half = std::tan(0.5 * view.vertical_fov.value);

@@ -75,6 +75,9 @@ struct CutNode {
   bool visible = true;          // in the frustum and before the horizon
 };
 
+// The part of an image, which lies under a quadnode, under one of its descendants or itself.
+ImageUse PartOf(const ImageUse& image, Quadcode node, Quadcode descendant);
+
 struct CutLimits {
   int max_nodes = 1000;  // quadnodes in a cut; more are not refined
 };

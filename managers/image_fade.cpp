@@ -1,23 +1,10 @@
 #include "managers/image_fade.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace belvedere {
 namespace {
-
-// The part of a quadnode's image that lies under one of its descendants, or under itself.
-ImageUse PartOf(const ImageUse& image, Quadcode node, Quadcode descendant) {
-  const int levels = descendant.level() - node.level();
-  const auto across = (int64_t{1} << levels) - 1;
-  const auto scale = static_cast<float>(std::ldexp(1.0, -levels));
-  ImageUse part = image;
-  part.offset_u += image.scale * scale * static_cast<float>(descendant.column() & across);
-  part.offset_v += image.scale * scale * static_cast<float>(descendant.row() & across);
-  part.scale *= scale;
-  return part;
-}
 
 bool IsSame(const ImageUse& image, const ImageUse& other) {
   return image.type == other.type && image.source == other.source;

@@ -3,13 +3,17 @@
 // Triangles are chosen a little finer than asked, by kKeepMargin, and are kept while errors surely have not grown by
 // more. What the eye's moving by d does to g (cut.h) is in the choice already, as long as d is within kKeepMargin of
 // the quadnode's nearest depth. What is left, for a point of depth z when they were chosen and z' now:
-//     The eye moves: depth is at least z - d then, and z at least the nearest depth.
-//     The line of view then turns by an angle a from f to f', t = |f' - f|. At a tangent T from f' the cosine of the
-//     angle between f and what is seen is at most cos a + T sin a <= 1 + T t of what it is to f': so z' >= (z - d) / (1
-//     + T t), and T is at most the greatest of what is seen of the quadnode. g = |f x m| / cosine, m normal to the line
-//     of sight. |f x m| is the sine of an angle whose cotangent is no greater than T at f', hence at least cos a - T
-//     sin a >= 1 - t^2 / 2 - T t of |f' x m|: g grows by (1 + T t) / (1 - t^2 / 2
-//     - T t) at most. Where the quadnode's greatest g was taken, what that has become bounds it too.
+//
+// The eye moves: depth is at least z - d then, and z at least the nearest depth.
+//
+// The line of view then turns by an angle a from f to f'; t = |f' - f|. What is seen at a tangent T from f' lies at an
+// angle from f whose cosine is, over that of its angle from f', at most
+//     cos a + T sin a <= 1 + T t,        so  z' >= (z - d) / (1 + T t);
+// T is at most the greatest of what is seen of the quadnode. g = |f x m| / cosine, m normal to the line of sight, and
+// |f x m| is, over |f' x m|, at least
+//     cos a - T sin a >= 1 - t^2 / 2 - T t,  so  g' <= g (1 + T t) / (1 - t^2 / 2 - T t).
+// Where the quadnode's greatest g was taken, what that has become bounds it too.
+//
 // The order is no matter: t and d say where the eye has come from, not how. W of post_selection.h is kKeepMargin wider
 // than the picture for what is seen at T now and was before the turn.
 //

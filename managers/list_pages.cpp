@@ -95,7 +95,6 @@ void ListPages::CountByLayer() {
 }
 
 void ListPages::Finish(ViewId view, Queues queues) {
-  CountByLayer();
   std::sort(wishes_.begin(), wishes_.end(), [](const Wish& a, const Wish& b) { return a.key.type < b.key.type; });
   auto begin = wishes_.begin();
   for (int type = 0; type < paging_.layers.size(); ++type) {

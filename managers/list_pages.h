@@ -39,6 +39,8 @@ class ListPages final : public PageAccess {
 
   // Which of a view's queues a manager speaks for.
   enum class Queues { kTerrain, kObjects };
+  // Leaves in list.layer_pages where the pages of each layer are that were looked for.
+  void CountByLayer();
   // Sends the wishes of that view to those queues, sorts the list's uploads, most wanted first, and tells the list
   // where the pages of each layer are.
   void Finish(ViewId view, Queues queues);
@@ -61,8 +63,6 @@ class ListPages final : public PageAccess {
   // Of the images that the list uses and wants, those of the key's kind; nullptr: it is no image.
   int* CountOf(const PageKey& key);
   bool HasRoomFor(const PageKey& key);
-
-  void CountByLayer();
 
   struct Upload {
     float priority;

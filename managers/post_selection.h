@@ -9,9 +9,10 @@
 //
 // Slant. A quadnode's error_scale has the greatest g (cut.h) over all of it; each post takes the greatest over the
 // triangles that it splits where that is less. With u and a the vertical at the post and its place from the eye, z its
-// depth and f the line of view, g there is |u - (u.f) a / z|. Let p be another point, s away from the post, seen from
-// an eye that has moved by d: it is seen at w = (a + s - d) / (z + (s - d).f), from which w - a / z = ((s - d) - w (s -
-// d).f) / z. So with r the most that |s| and |d| are together and W the most that |w| is in the picture,
+// depth and f the line of view, g there is |u - (u.f) a / z|. Another point, s away from the post, is seen by an eye
+// that has moved by d at
+//     w = (a + s - d) / (z + (s - d).f),  hence  w - a / z = ((s - d) - w (s - d).f) / z.
+// So with r the most that |s| and |d| are together, and W the most that |w| is in the picture,
 //     g <= |u - (u.f) a / z| + |u.f| W r / z + W |change of u|.
 // Verticals are taken to be those of a sphere through the frame's origin, which change by s over its radius; how far
 // those of the ellipsoid are from them is added. All this is for any eye within kKeepMargin of the nearest depth, so

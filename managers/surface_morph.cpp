@@ -175,7 +175,8 @@ void SurfaceMorph::Remember(const DisplayList& list, std::span<const uint32_t> r
                             std::span<const uint32_t> first_vertex) {
   old_s_ = now_s_;
   old_vertices_ = list.vertices;
-  old_draws_ = list.terrain_draws;
+  old_draws_.clear();
+  for (const TerrainDraw& draw : list.terrain_draws) old_draws_.push_back({draw.node, draw.frame, draw.rise_s});
   old_frames_ = list.frames;
   old_ranked_.assign(ranked.begin(), ranked.end());
   old_first_vertex_.assign(first_vertex.begin(), first_vertex.end());
@@ -220,7 +221,7 @@ std::optional<uint32_t> SurfaceMorph::OldVertexAt(GridPoint position) const {
 
 glm::vec3 SurfaceMorph::OldPointIn(const Frame& frame, uint32_t vertex) const {
   const ListVertex& old = (*old_vertices_)[vertex];
-  const TerrainDraw& draw = old_draws_[old.draw()];
+  const OldDraw& draw = old_draws_[old.draw()];
   const Frame& old_frame = old_frames_[draw.frame];
   glm::vec3 point = PointOf(old);
   const auto rise_m = old.rise_m * static_cast<float>(LeftAt(now_s_, old_s_, static_cast<double>(draw.rise_s)));

@@ -63,7 +63,12 @@ class SurfaceMorph {
   bool jump_ = true;
   double old_s_ = 0;
   std::shared_ptr<const std::vector<ListVertex>> old_vertices_;
-  std::vector<TerrainDraw> old_draws_;
+  struct OldDraw {
+    Quadcode node;
+    uint32_t frame;
+    float rise_s;
+  };
+  std::vector<OldDraw> old_draws_;
   std::vector<Frame> old_frames_;
   std::vector<uint32_t> old_ranked_, old_first_vertex_;
   std::vector<GridPoint> positions_;  // of the old vertices that are in the table

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <utility>
 
 namespace belvedere {
 namespace {
@@ -75,23 +76,17 @@ class TerrainManager::Worker {
   void Build(const ViewParameters& view, double now_s, DisplayList& list) {
     const Geodetic eye = ToGeodetic(view.EyeAt(now_s));
     const std::optional<GroundPoint> ground = GroundUnder(paging_, terrain_, eye.latitude_deg, eye.longitude_deg);
-    list.statistics.height_above_ground_m = std::max(0.0, eye.height_m - (ground ? ground->height_m : 0.0));
-    const ViewMatrices matrices = MatricesOf(view, now_s, list.statistics.height_above_ground_m);
+    const double height_m = std::max(0.0, eye.height_m - (ground ? ground->height_m : 0.0));
+    const ViewMatrices matrices = MatricesOf(view, now_s, height_m);
+    const bool jump = jump_.Next(view, now_s, height_m, was_settled_);
 
     ViewParameters held = view;
     held.error_px = bound_.Next(view, *channel_->frame.Get(), number_ + 1);
-    list.statistics.held_error_px = held.error_px;
-    ImageLimits images = image_limits_;
-    images.colour -= steps_.images_before();
-    ListPages pages(paging_, terrain_, list, images);
-    CutLimits limits;
-    const bool is_full = static_cast<double>(paging_.cache.PinnedBytes()) >
-                         kPinnedShareOfBudget * static_cast<double>(paging_.cache.budget_bytes());
-    if (is_full) {
-      limits.max_nodes = std::min(limits.max_nodes, last_nodes_);
-    }
-    const bool jump = jump_.Next(view, now_s, list.statistics.height_above_ground_m, was_settled_);
     held.image_layers = steps_.Next(view.image_layers, paging_.layers, view.UtcAt(now_s), now_s, jump);
+    ListPages pages(paging_, terrain_, list, LimitsOfImages());
+    const bool is_full = CacheIsFull();
+    CutLimits limits;
+    if (is_full) limits.max_nodes = std::min(limits.max_nodes, last_nodes_);
     Cut cut = SelectCut(held, matrices, paging_.layers, terrain_, limits, pages, steps_.before());
     steps_.Shown(cut.of_step_before, now_s);
     fade_.Apply(cut.nodes, view.image_layers, now_s, jump, pages);
@@ -100,17 +95,36 @@ class TerrainManager::Worker {
     const MeshStatistics mesh =
         BuildSurface(cut.nodes, SightOf(view, matrices.eye_ecef), held.error_px, surface_, list);
     last_nodes_ = static_cast<int>(cut.nodes.size());
-    list.records = cut.records;
-    list.volumes = cut.volumes;
+    if (!is_full && pages.pages_waiting() == 0) {
+      Foresee(held, now_s, height_m, paging_.layers, terrain_, limits, pages);
+    }
+    if (view.pages) pages.CountByLayer();
+    pages.Finish(view_id_, ListPages::Queues::kTerrain);
+
     list.view = view_id_;
     list.view_number = view.number;
     list.number = ++number_;
-    if (!is_full && pages.pages_waiting() == 0) {
-      Foresee(held, now_s, list.statistics.height_above_ground_m, paging_.layers, terrain_, limits, pages);
-    }
-    pages.Finish(view_id_, ListPages::Queues::kTerrain);
+    list.statistics.height_above_ground_m = height_m;
+    list.statistics.held_error_px = held.error_px;
+    Describe(cut, mesh, pages, list.statistics);
+    list.records = std::move(cut.records);
+    list.volumes = std::move(cut.volumes);
+  }
 
-    DisplayList::Statistics& statistics = list.statistics;
+  // Images of a layer's step before are shown beside those of its next.
+  ImageLimits LimitsOfImages() const {
+    ImageLimits limits = image_limits_;
+    limits.colour -= steps_.images_before();
+    return limits;
+  }
+
+  bool CacheIsFull() const {
+    return static_cast<double>(paging_.cache.PinnedBytes()) >
+           kPinnedShareOfBudget * static_cast<double>(paging_.cache.budget_bytes());
+  }
+
+  void Describe(const Cut& cut, const MeshStatistics& mesh, const ListPages& pages,
+                DisplayList::Statistics& statistics) {
     statistics.triangles = mesh.triangles;
     statistics.nodes = static_cast<uint32_t>(cut.nodes.size());
     statistics.achieved_error_px = mesh.achieved_error_px + cut.left_over_error_px;

@@ -1,5 +1,6 @@
 // VolumePass: the bounding volumes of the quadnodes that are drawn, each as three circles.
 //
+// Frames: the list's volumes are spheres in ECEF, metres; what goes to the GPU is in clip space, made in double.
 // Threads: the render thread.
 #pragma once
 

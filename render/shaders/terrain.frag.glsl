@@ -43,11 +43,17 @@ vec4 Texel(int single, vec2 uv, float page) {
   return single != 0 ? vec4(texture(overlay_pages, vec3(uv, page)).rrr, 1.0) : texture(colour_pages, vec3(uv, page));
 }
 
+#if FADE
 // A share of `before` in the place of `texel`; each colour counts as much as it covers.
 vec4 Blend(vec4 texel, vec4 before, float share) {
   vec4 sum = mix(vec4(texel.rgb * texel.a, texel.a), vec4(before.rgb * before.a, before.a), share);
   return vec4(sum.rgb / max(sum.a, 1.0e-3), sum.a);
 }
+#define FADING(single, uv, page, from_uv, from_page, share) \
+  Blend(Texel(single, uv, page), Texel(single, from_uv, from_page), share)
+#else
+#define FADING(single, uv, page, from_uv, from_page, share) Texel(single, uv, page)
+#endif
 
 // role, single and adjusted are constants where it is called.
 void Lay(int role, int single, int adjusted, vec4 texel, vec4 how) {
@@ -88,20 +94,10 @@ float Glint() {
 
 void main() {
 #if LAYER0 != 0
-#if FADE
-  Lay(LAYER0, SINGLE0, ADJUST0,
-      Blend(Texel(SINGLE0, uv01.xy, pages.x), Texel(SINGLE0, from01.xy, from_pages.x), from_pages.z), layers[0]);
-#else
-  Lay(LAYER0, SINGLE0, ADJUST0, Texel(SINGLE0, uv01.xy, pages.x), layers[0]);
-#endif
+  Lay(LAYER0, SINGLE0, ADJUST0, FADING(SINGLE0, uv01.xy, pages.x, from01.xy, from_pages.x, from_pages.z), layers[0]);
 #endif
 #if LAYER1 != 0
-#if FADE
-  Lay(LAYER1, SINGLE1, ADJUST1,
-      Blend(Texel(SINGLE1, uv01.zw, pages.y), Texel(SINGLE1, from01.zw, from_pages.y), from_pages.w), layers[1]);
-#else
-  Lay(LAYER1, SINGLE1, ADJUST1, Texel(SINGLE1, uv01.zw, pages.y), layers[1]);
-#endif
+  Lay(LAYER1, SINGLE1, ADJUST1, FADING(SINGLE1, uv01.zw, pages.y, from01.zw, from_pages.y, from_pages.w), layers[1]);
 #endif
 #if LAYER2 != 0
   Lay(LAYER2, SINGLE2, ADJUST2, Texel(SINGLE2, uv23.xy, pages.z), layers[2]);

@@ -72,9 +72,10 @@ struct ListVertex {
   float rise_m = 0;           // upwards from its place, at time_s
 
   static constexpr uint32_t kPostBits = 15;
+  static constexpr uint32_t kPostMask = (1U << kPostBits) - 1U;
   static constexpr uint32_t PlaceOf(uint32_t draw, uint32_t post) { return draw << kPostBits | post; }
   uint32_t draw() const { return place >> kPostBits; }
-  uint32_t post() const { return place & ((1U << kPostBits) - 1U); }
+  uint32_t post() const { return place & kPostMask; }
 };
 static_assert(kVerticesPerPage < 1 << ListVertex::kPostBits);
 

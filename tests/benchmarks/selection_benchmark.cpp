@@ -5,21 +5,17 @@
 // Usage: selection_benchmark DATASET PATH.csv [ERROR_PX]
 // PATH.csv is a camera path as `belvedere tour` takes it; every ten seconds of it are a pose.
 
-#include "managers/cut.h"
-#include "managers/list_pages.h"
 #include "managers/surface_mesh.h"
 #include "runtime/app/camera_path.h"
 #include "runtime/app/layer_text.h"
-#include "runtime/earth/ellipsoid.h"
-#include "runtime/paging/terrain_height.h"
-#include "servers/stock_modules.h"
+#include "tests/figures/paged_dataset.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
-#include <unordered_set>
+#include <utility>
 
 namespace belvedere {
 namespace {
@@ -30,35 +26,9 @@ constexpr int kTimedBuilds = 30;
 constexpr double kSecondsPerList = 1.0 / 30;
 
 struct Scene {
-  std::unique_ptr<Dataset> dataset;
-  ModelCatalogue models;
-  ModuleRegistry registry;
-  std::unique_ptr<Paging> paging;
-  DataType terrain = 0;
-  std::vector<PagePin> on_gpu;
-  std::unordered_set<const Page*> placed;
+  std::unique_ptr<figures::PagedDataset> paged;
   SurfaceState surface;
 };
-
-// Reads what a list wished for and pretends to upload it. False when there was nothing to do.
-bool Serve(Scene& scene, DisplayList& list) {
-  bool any = false;
-  for (const auto& queue : scene.paging->queues) {
-    while (const std::optional<PageKey> key = queue->TryTake()) {
-      any = true;
-      Result<PagePin> pin = ReadIntoCache(*scene.paging, scene.registry, *key);
-      if (pin.ok()) scene.on_gpu.push_back(std::move(*pin));
-      queue->Done(*key);
-    }
-  }
-  for (const PagePin& pin : list.uploads) scene.on_gpu.push_back(pin.Share());
-  for (const PagePin& pin : scene.on_gpu) {
-    if (!scene.placed.insert(&pin.page()).second) continue;
-    any = true;
-    pin.page().residency()->Place(static_cast<int>(scene.placed.size()));
-  }
-  return any;
-}
 
 struct Built {
   double cut_ms = 0, mesh_ms = 0;
@@ -70,13 +40,11 @@ Built Build(Scene& scene, const ViewParameters& view, double now_s, DisplayList&
   const Clock& clock = Clock::System();
   list.Clear();
   list.time_s = now_s;
-  const Geodetic eye = ToGeodetic(view.eye_ecef);
-  const auto ground = GroundUnder(*scene.paging, scene.terrain, eye.latitude_deg, eye.longitude_deg);
-  const ViewMatrices matrices = MatricesOf(view, 0, std::max(0.0, eye.height_m - (ground ? ground->height_m : 0)));
+  const ViewMatrices matrices = scene.paged->MatricesFor(view);
   Built built;
-  ListPages pages(*scene.paging, scene.terrain, list);
+  ListPages pages(scene.paged->paging(), scene.paged->terrain(), list);
   const double start = clock.NowSeconds();
-  built.cut = SelectCut(view, matrices, scene.paging->layers, scene.terrain, {}, pages);
+  built.cut = SelectCut(view, matrices, scene.paged->layers(), scene.paged->terrain(), {}, pages);
   const double middle = clock.NowSeconds();
   scene.surface.morph.Begin(now_s, false);
   built.mesh = BuildSurface(built.cut.nodes, SightOf(view, matrices.eye_ecef), view.error_px, scene.surface, list);
@@ -111,7 +79,7 @@ Timed TimeLists(Scene& scene, const CameraPath& path, double start_s, double sec
     DisplayList& list = lists[static_cast<size_t>(i) % lists.size()];
     Look(path.PoseAt(start_s + i * seconds_per_list), view);
     timed.last = Build(scene, view, start_s + i * kSecondsPerList, list);
-    while (Serve(scene, list)) {
+    while (scene.paged->Serve(list)) {
     }
     cut_ms.push_back(timed.last.cut_ms);
     mesh_ms.push_back(timed.last.mesh_ms);
@@ -129,7 +97,7 @@ void Report(Scene& scene, const CameraPath& path, double time_s, ViewParameters&
   Look(path.PoseAt(time_s), view);
   do {
     Build(scene, view, time_s - 10, list);
-  } while (Serve(scene, list) && ++rounds < kMostRounds);
+  } while (scene.paged->Serve(list) && ++rounds < kMostRounds);
   const Timed still = TimeLists(scene, path, time_s, 0, view, lists);
   const Built& built = still.last;
   int deepest = 0;
@@ -162,29 +130,23 @@ int Run(const char* dataset_path, const char* path_file, double error_px) {
     return 1;
   }
   Scene scene;
-  Result<std::unique_ptr<Dataset>> dataset = Dataset::Open(dataset_path);
-  if (!dataset.ok()) {
-    fmt::print(stderr, "{}\n", dataset.message());
+  Result<std::unique_ptr<figures::PagedDataset>> paged = figures::PagedDataset::Open(dataset_path);
+  if (!paged.ok()) {
+    fmt::print(stderr, "{}\n", paged.message());
     return 1;
   }
-  scene.dataset = std::move(*dataset);
-  if (const Status status = RegisterStockModules(scene.registry, *scene.dataset, scene.models, {}); !status.ok()) {
-    fmt::print(stderr, "{}\n", status.message());
-    return 1;
-  }
-  scene.paging = std::make_unique<Paging>(MakeLayerTable(scene.registry), size_t{4} << 30, Clock::System());
-  scene.terrain = scene.paging->layers.Find(kTerrainLayer)->type;
+  scene.paged = std::move(*paged);
 
   ViewParameters view;
   view.number = 1;
   view.error_px = error_px;
-  view.image_layers = UsesOf(*LayersOf({}, scene.paging->layers));
+  view.image_layers = UsesOf(*LayersOf({}, scene.paged->layers()));
   std::array<double, 2> sums{};
   for (double time_s = 0; time_s < path->length_s(); time_s += kSecondsPerPose) {
     Report(scene, *path, time_s, view, sums);
   }
   fmt::print("sum of medians: {:.2f} ms still, {:.2f} ms in motion\n", sums[0], sums[1]);
-  scene.on_gpu.clear();
+  scene.paged->Unpin();
   return 0;
 }
 

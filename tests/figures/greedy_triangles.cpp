@@ -23,10 +23,8 @@
 #include "managers/list_pages.h"
 #include "managers/surface_mesh.h"
 #include "runtime/app/layer_text.h"
-#include "runtime/earth/ellipsoid.h"
-#include "runtime/paging/terrain_height.h"
-#include "servers/stock_modules.h"
 #include "tests/figures/greedy_search.h"
+#include "tests/figures/paged_dataset.h"
 #include "tests/figures/poses.h"
 
 #include <fmt/format.h>
@@ -41,7 +39,6 @@ namespace {
 
 constexpr double kBound_px = 1.0;
 constexpr int kMostRounds = 60;
-constexpr size_t kCache_bytes = size_t{4} << 30;
 
 [[noreturn]] void Give(const std::string& line) {
   fmt::print(stderr, "greedy_triangles: {}\n", line);
@@ -52,48 +49,44 @@ constexpr size_t kCache_bytes = size_t{4} << 30;
 class Pages final : public Terrain {
  public:
   explicit Pages(const std::string& path) {
-    Result<std::unique_ptr<Dataset>> dataset = Dataset::Open(path);
-    if (!dataset.ok()) Give(dataset.message());
-    dataset_ = std::move(*dataset);
-    const std::optional<int> heights = dataset_->FindLayer(LayerKind::kElevation);
+    Result<std::unique_ptr<PagedDataset>> paged = PagedDataset::Open(path);
+    if (!paged.ok()) Give(paged.message());
+    paged_ = std::move(*paged);
+    const std::optional<int> heights = dataset().FindLayer(LayerKind::kElevation);
     if (!heights) Give("the dataset has no heights");
     heights_ = *heights;
-    const Status registered = RegisterStockModules(registry_, *dataset_, models_, {});
-    if (!registered.ok()) Give(registered.message());
-    paging_ = std::make_unique<Paging>(MakeLayerTable(registry_), kCache_bytes, Clock::System());
-    terrain_ = paging_->layers.Find(kTerrainLayer)->type;
   }
 
-  const Dataset& dataset() const { return *dataset_; }
-  const LayerTable& layers() const { return paging_->layers; }
+  const Dataset& dataset() const { return paged_->dataset(); }
+  const LayerTable& layers() const { return paged_->layers(); }
 
   const TerrainPage& PageOf(Quadcode node) override {
     PagePin& pin = pins_[node];
-    if (!pin) pin = Read({terrain_, node});
+    if (!pin) {
+      Result<PagePin> read = paged_->Read({paged_->terrain(), node});
+      if (!read.ok()) Give(read.message());
+      pin = std::move(*read);
+    }
     return pin.as<TerrainPage>();
   }
-  bool HasFiner(Quadcode node) const override { return dataset_->HasChildren(heights_, node); }
+  bool HasFiner(Quadcode node) const override { return dataset().HasChildren(heights_, node); }
 
   // Ends a pose.
   void Unpin() {
     pins_.clear();
-    images_.clear();
+    paged_->Unpin();
   }
 
-  ViewMatrices MatricesFor(const ViewParameters& view) const {
-    const Geodetic eye = ToGeodetic(view.eye_ecef);
-    const auto ground = GroundUnder(*paging_, terrain_, eye.latitude_deg, eye.longitude_deg);
-    return MatricesOf(view, 0, std::max(0.0, eye.height_m - (ground ? ground->height_m : 0)));
-  }
+  ViewMatrices MatricesFor(const ViewParameters& view) { return paged_->MatricesFor(view); }
 
   // The cut as it is once all its pages have come.
   Cut SettledCut(const ViewParameters& view) {
     for (int round = 0; round < kMostRounds; ++round) {
       DisplayList list;
-      ListPages pages(*paging_, terrain_, list);
-      Cut cut = SelectCut(view, MatricesFor(view), layers(), terrain_, {}, pages);
+      ListPages pages(paged_->paging(), paged_->terrain(), list);
+      Cut cut = SelectCut(view, MatricesFor(view), layers(), paged_->terrain(), {}, pages);
       pages.Finish(view.view, ListPages::Queues::kTerrain);
-      if (!Serve(list)) {
+      if (!paged_->Serve(list)) {
         for (const CutNode& node : cut.nodes) PageOf(node.node);  // stay when the list goes
         return cut;
       }
@@ -102,40 +95,9 @@ class Pages final : public Terrain {
   }
 
  private:
-  PagePin Read(const PageKey& key) {
-    Result<PagePin> pin = ReadIntoCache(*paging_, registry_, key);
-    if (!pin.ok()) Give(pin.message());
-    return std::move(*pin);
-  }
-
-  // Reads what a list wished for and pretends to upload it. False when there was nothing to do.
-  bool Serve(DisplayList& list) {
-    bool any = false;
-    for (const auto& queue : paging_->queues) {
-      while (const std::optional<PageKey> key = queue->TryTake()) {
-        any = true;
-        images_.push_back(Read(*key));
-        queue->Done(*key);
-      }
-    }
-    for (const PagePin& pin : list.uploads) images_.push_back(pin.Share());
-    for (const PagePin& pin : images_) {
-      if (pin.key().type == terrain_ || pin.page().residency()->on_gpu()) continue;
-      any = true;
-      pin.page().residency()->Place(next_slot_++);
-    }
-    return any;
-  }
-
-  std::unique_ptr<Dataset> dataset_;
-  ModelCatalogue models_;
-  ModuleRegistry registry_;
-  std::unique_ptr<Paging> paging_;
+  std::unique_ptr<PagedDataset> paged_;
   int heights_ = 0;
-  DataType terrain_ = 0;
-  int next_slot_ = 0;
   std::unordered_map<Quadcode, PagePin> pins_;
-  std::vector<PagePin> images_;
 };
 
 struct Count {

@@ -129,7 +129,7 @@ TEST_F(ListPagesTest, TheListIsToldWhereThePagesOfEachLayerAre) {
     if (!pages.Slot({kImagery, Quadcode::Root(tree)})) pages.Want({kImagery, Quadcode::Root(tree)}, 1);
   }
   pages.Terrain(node_);  // not in memory, and not wanted
-  pages.Finish(kView, ListPages::Queues::kTerrain);
+  pages.CountByLayer();
   ASSERT_EQ(list_.layer_pages.size(), 2U);
   EXPECT_EQ(list_.layer_pages[0].layer, "terrain");
   EXPECT_EQ(list_.layer_pages[0].asked, 0U);

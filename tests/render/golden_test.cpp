@@ -6,7 +6,7 @@
 
 #include "render/image_file.h"
 #include "render/renderer.h"
-#include "tests/render/synthetic_scene.h"
+#include "tests/render/on_stage.h"
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
@@ -58,15 +58,9 @@ void ExpectGolden(const Picture& picture, const std::string& name) {
   EXPECT_LE(static_cast<double>(outliers), kOutlierShare * static_cast<double>(golden.size() / 3)) << name;
 }
 
-class Golden : public ::testing::Test {
+class Golden : public OnStage {
  protected:
-  void SetUp() override {
-    RenderOptions options;
-    options.colour_slots = options.overlay_slots = 24;
-    auto stage = Stage::Make(scene_, options, clock_);
-    ASSERT_TRUE(stage.ok()) << stage.message();
-    stage_ = std::move(*stage);
-  }
+  void SetUp() override { Open(24); }
 
   // Nine quadnodes of hills, chequered, half of them under a relief.
   Picture Draw(ViewParameters view) {
@@ -93,10 +87,6 @@ class Golden : public ::testing::Test {
     pins.push_back(std::move(pin));
     stage_->Upload(std::move(pins));
   }
-
-  ManualClock clock_;
-  Scene scene_;
-  std::unique_ptr<Stage> stage_;
 };
 
 TEST_F(Golden, HillsFromAnAircraft) {

@@ -3,7 +3,7 @@
 #include "render/ground_tint.h"
 #include "render/renderer.h"
 
-#include "tests/render/synthetic_scene.h"
+#include "tests/render/on_stage.h"
 
 #include <gtest/gtest.h>
 
@@ -13,14 +13,10 @@ namespace {
 constexpr double kMidnight_s = 12 * 3600;
 constexpr Rgba kGround{100, 150, 200, 255};
 
-class Layers : public ::testing::Test {
+class Layers : public OnStage {
  protected:
   void SetUp() override {
-    RenderOptions options;
-    options.colour_slots = options.overlay_slots = 12;
-    auto stage = Stage::Make(scene_, options, clock_);
-    ASSERT_TRUE(stage.ok()) << stage.message();
-    stage_ = std::move(*stage);
+    Open(12);
     nodes_ = Block(0, 0, 10, 3);
     for (const Quadcode node : nodes_) scene_.AddTerrain(node, [](double, double) { return 0.0; });
     view_ = LookAt({0, 0, 5000}, 0, -90, 32, 32);
@@ -80,11 +76,8 @@ class Layers : public ::testing::Test {
     for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], tolerance) << "channel " << i;
   }
 
-  ManualClock clock_;
-  Scene scene_;
   std::vector<Quadcode> nodes_;
   ViewParameters view_;
-  std::unique_ptr<Stage> stage_;
 };
 
 TEST_F(Layers, OpacityLetsThroughWhatIsUnder) {

@@ -1,7 +1,7 @@
 // Moving objects, drawn off-screen.
 #include "render/renderer.h"
 
-#include "tests/render/synthetic_scene.h"
+#include "tests/render/on_stage.h"
 
 #include <gtest/gtest.h>
 
@@ -34,12 +34,10 @@ std::unique_ptr<ModelPage> Cube() {
   return page;
 }
 
-class Objects : public ::testing::Test {
+class Objects : public OnStage {
  protected:
   void SetUp() override {
-    auto stage = Stage::Make(scene_, {}, clock_);
-    ASSERT_TRUE(stage.ok()) << stage.message();
-    stage_ = std::move(*stage);
+    Open(24);
     std::vector<PagePin> pins;
     pins.push_back(scene_.AddModel(0, Cube()));
     stage_->Upload(std::move(pins));
@@ -97,9 +95,6 @@ class Objects : public ::testing::Test {
     return {(0.5 + 0.5 * clip.x / clip.w) * picture.width_px, (0.5 - 0.5 * clip.y / clip.w) * picture.height_px};
   }
 
-  ManualClock clock_;
-  Scene scene_;
-  std::unique_ptr<Stage> stage_;
   ViewParameters view_;
 };
 

@@ -2,7 +2,7 @@
 #include "render/renderer.h"
 
 #include "runtime/base/clock.h"
-#include "tests/render/synthetic_scene.h"
+#include "tests/render/on_stage.h"
 
 #include <gtest/gtest.h>
 
@@ -30,16 +30,10 @@ double Rugged(double latitude_deg, double longitude_deg) {
   return 400 + 300 * std::sin(latitude_deg * 2000) * std::cos(longitude_deg * 1700);
 }
 
-class Drawing : public ::testing::Test {
+class Drawing : public OnStage {
  protected:
-  void SetUp() override {
-    RenderOptions options;
-    options.colour_slots = 24;
-    options.overlay_slots = 24;
-    auto stage = Stage::Make(scene_, options, clock_);
-    ASSERT_TRUE(stage.ok()) << stage.message();
-    stage_ = std::move(*stage);
-  }
+  void SetUp() override { Open(24); }
+
   void Load(const std::vector<Quadcode>& nodes, const Height& height) {
     for (const Quadcode node : nodes) scene_.AddTerrain(node, height);
     nodes_ = nodes;
@@ -61,9 +55,6 @@ class Drawing : public ::testing::Test {
     return stage_->Take();
   }
 
-  ManualClock clock_;
-  Scene scene_;
-  std::unique_ptr<Stage> stage_;
   std::vector<Quadcode> nodes_;
   uint64_t number_ = 0;
 };
