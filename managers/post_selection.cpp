@@ -1,5 +1,7 @@
 #include "managers/post_selection.h"
 
+#include "managers/picture_sides.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -28,15 +30,14 @@ struct PostSelection::LocalView {
   glm::vec3 forward;
   float cos_corner;
   bool perspective;
-  float scale;                         // error in metres times this is the least depth at which it keeps the bound
-  float nearest_depth_m;               // CutNode::nearest_depth_m
-  float left_over_m;                   // what the quadnode leaves whatever is drawn
-  float greatest_stretch;              // CutNode::greatest_stretch
-  float widest;                        // W of the header
-  float moved_m;                       // as far may the eye move
-  float tilt;                          // by which the vertical of a post may be wrong, radians
-  std::array<glm::vec3, 4> inwards{};  // Sight::inwards_ecef of the sides beyond which some of the quadnode may lie
-  size_t sides = 0;                    // of those
+  float scale;             // error in metres times this is the least depth at which it keeps the bound
+  float nearest_depth_m;   // CutNode::nearest_depth_m
+  float left_over_m;       // what the quadnode leaves whatever is drawn
+  float greatest_stretch;  // CutNode::greatest_stretch
+  float widest;            // W of the header
+  float moved_m;           // as far may the eye move
+  float tilt;              // by which the vertical of a post may be wrong, radians
+  PictureSides sides;
 
   LocalView(const CutNode& node, const Sight& sight, const Frame& frame, double error_px)
       : page(*node.page),
@@ -50,13 +51,8 @@ struct PostSelection::LocalView {
         greatest_stretch(static_cast<float>(node.greatest_stretch)),
         widest(static_cast<float>((1.0 + kKeepMargin) / sight.cos_corner)),
         moved_m(static_cast<float>(kKeepMargin * node.nearest_depth_m)),
-        tilt(static_cast<float>(GreatestTilt(page, frame))) {
-    if (!perspective || !node.visible) return;
-    for (const glm::dvec3& inward_ecef : sight.inwards_ecef) {
-      const double least_m = glm::dot(page.center_ecef - sight.eye_ecef, inward_ecef) - page.radius_m;
-      if (least_m < 0) inwards[sides++] = glm::vec3(inward_ecef * frame.ecef_from_frame);
-    }
-  }
+        tilt(static_cast<float>(GreatestTilt(page, frame))),
+        sides(node, sight, frame) {}
 
   // Of the ellipsoid's verticals from those of the sphere, which are a little short where the ground is below it.
   static double GreatestTilt(const TerrainPage& page, const Frame& frame) {
@@ -83,12 +79,9 @@ struct PostSelection::LocalView {
 
   // All triangles that the post splits lie beside the picture, and well so.
   bool IsBeside(int post, int level) const {
-    const float spread_m = page.spread_m[static_cast<size_t>(level)];
     const TerrainVertex& vertex = page.vertices[static_cast<size_t>(post)];
-    const glm::vec3 away(vertex.x - eye.x, vertex.y - eye.y, vertex.z - eye.z);
-    const float beyond_m = spread_m + static_cast<float>(kBesideGuard) * (glm::length(away) + spread_m);
-    return std::any_of(inwards.begin(), inwards.begin() + sides,
-                       [&](const glm::vec3& inward) { return glm::dot(away, inward) < -beyond_m; });
+    return sides.IsBeyond({vertex.x, vertex.y, vertex.z}, page.spread_m[static_cast<size_t>(level)],
+                          static_cast<float>(kBesideGuard));
   }
 
   // Least depth of any point of the triangles that the post splits.
@@ -160,7 +153,7 @@ void PostSelection::Test(Post post, int level, const LocalView& view) {
   if (error * stay > least_depth_m && view.perspective) least_depth_m = view.LeastDepth(post.index(), level);
   least_depth_m = std::max(least_depth_m, kLeastDepth_m);
   if (error * stay > least_depth_m && view.greatest_stretch > 0) error *= view.ShareOfGreatest(post.index(), level);
-  if (error * stay > least_depth_m && view.sides > 0 && view.IsBeside(post.index(), level)) {
+  if (error * stay > least_depth_m && view.sides.any() && view.IsBeside(post.index(), level)) {
     error *= static_cast<float>(kShareBesidePicture);
     left_out_beside_ |= error * stay <= least_depth_m;
   }

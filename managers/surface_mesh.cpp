@@ -46,7 +46,7 @@ class Surface {
 
   MeshStatistics Build(const Sight& sight, double error_px) {
     Choose(sight, error_px);
-    Place();
+    Place(sight);
     if (is_changed_) {
       Share();
       Join();
@@ -72,7 +72,7 @@ class Surface {
     }
   }
 
-  void Place() {
+  void Place(const Sight& sight) {
     FindReach();
     if (is_changed_) {
       std::unordered_map<Quadcode, const KeptMesh*> unchanged;
@@ -82,7 +82,7 @@ class Surface {
       state_.morph.Prepare(unchanged);
     }
     for (size_t i = 0; i < nodes_.size(); ++i) {
-      state_.morph.Place(nodes_[i], list_.frames[chosen_[i].frame], chosen_[i].is_new, *chosen_[i].mesh);
+      state_.morph.Place(nodes_[i], sight, list_.frames[chosen_[i].frame], chosen_[i].is_new, *chosen_[i].mesh);
     }
   }
 

@@ -1,5 +1,7 @@
 #include "managers/surface_morph.h"
 
+#include "managers/picture_sides.h"
+
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -40,6 +42,13 @@ double LeftAt(double now_s, double from_s, double rise_s) {
 
 glm::vec3 UpIn(const Frame& frame, const glm::vec3& point) {
   return glm::normalize(glm::vec3(glm::dvec3(point) - frame.ToFrame(glm::dvec3(0))));
+}
+
+// Where the post is, every triangle that it is a corner of lies beside the picture. A neighbour's may be larger than
+// the post's own: borders are left out.
+bool IsUnseen(const PictureSides& sides, const TerrainPage& page, Post post, const glm::vec3& place) {
+  const bool inner = post.column > 0 && post.column < kCells && post.row > 0 && post.row < kCells;
+  return inner && sides.IsBeyond(place, page.spread_m[static_cast<size_t>(LevelOf(post))], 0);
 }
 
 glm::vec3 PointOf(const ListVertex& vertex) {
@@ -115,30 +124,33 @@ void SurfaceMorph::Begin(double now_s, bool jump) {
   jump_ = jump || !old_vertices_ || old_vertices_->empty();
 }
 
-void SurfaceMorph::Place(const CutNode& node, const Frame& frame, bool is_new, KeptMesh& mesh) {
+void SurfaceMorph::Place(const CutNode& node, const Sight& sight, const Frame& frame, bool is_new, KeptMesh& mesh) {
   if (jump_ || !node.visible) {
     if (!is_new && mesh.rises_until_s <= mesh.rises_from_s) return;
     for (ListVertex& vertex : mesh.vertices) vertex.rise_m = 0;
     mesh.rises_from_s = mesh.rises_until_s = 0;
     return;
   }
-  if (!is_new) {
-    if (mesh.rises_until_s <= mesh.rises_from_s) return;
-    const auto left = static_cast<float>(LeftAt(now_s_, mesh.rises_from_s, mesh.rises_until_s - mesh.rises_from_s));
-    for (ListVertex& vertex : mesh.vertices) vertex.rise_m *= left;
-    mesh.rises_from_s = now_s_;
-    if (mesh.rises_until_s <= now_s_) mesh.rises_from_s = mesh.rises_until_s = 0;
-    return;
-  }
+  if (is_new) return PlaceNew(node, sight, frame, mesh);
+  if (mesh.rises_until_s <= mesh.rises_from_s) return;
+  const auto left = static_cast<float>(LeftAt(now_s_, mesh.rises_from_s, mesh.rises_until_s - mesh.rises_from_s));
+  for (ListVertex& vertex : mesh.vertices) vertex.rise_m *= left;
+  mesh.rises_from_s = now_s_;
+  if (mesh.rises_until_s <= now_s_) mesh.rises_from_s = mesh.rises_until_s = 0;
+}
+
+void SurfaceMorph::PlaceNew(const CutNode& node, const Sight& sight, const Frame& frame, KeptMesh& mesh) {
   OldSurface old(*this, node.node, frame);
+  const PictureSides sides(node, sight, frame);
   const double least_m = kUnseen_px / PixelsPerMetre(node);
   double most_m = 0;
   for (ListVertex& vertex : mesh.vertices) {
-    const auto post = static_cast<int>(vertex.post());
-    const auto point = old.At({post % kPosts, post / kPosts});
-    if (!point) continue;
+    const auto index = static_cast<int>(vertex.post());
+    const Post post{index % kPosts, index / kPosts};
     const glm::vec3 place = PointOf(vertex);
-    if (*point == place) continue;
+    if (sides.any() && IsUnseen(sides, *node.page, post, place)) continue;
+    const auto point = old.At(post);
+    if (!point || *point == place) continue;
     const float rise_m = glm::dot(*point - place, UpIn(frame, place));
     if (std::abs(rise_m) < least_m) continue;
     vertex.rise_m = rise_m;

@@ -8,6 +8,9 @@
 //                                        edges. This goes through all levels, as the posts of a quadnode are among
 //                                        those of its children and the diagonals agree (bisection.h).
 //
+// What moves beside the picture moves nothing in it: there vertices are in their places at once, and the bound is kept
+// when the view turns that way. Not at borders, where a neighbour's larger triangles may hang on them.
+//
 // A vertex that several quadnodes share is one vertex of the list, so that the surface stays closed on its way. A post
 // that is left out jumps, by less than a pixel (kept_triangles.h).
 //
@@ -42,7 +45,7 @@ class SurfaceMorph {
   void Prepare(const std::unordered_map<Quadcode, const KeptMesh*>& unchanged);
 
   // Gives the rises of a quadnode's vertices for now. is_new: its mesh was chosen for this list.
-  void Place(const CutNode& node, const Frame& frame, bool is_new, KeptMesh& mesh);
+  void Place(const CutNode& node, const Sight& sight, const Frame& frame, bool is_new, KeptMesh& mesh);
   // The same for one vertex that neighbours share, of a mesh that is not new: whose vertex is drawn there may have
   // changed.
   void PlaceShared(const CutNode& node, const Frame& frame, uint16_t vertex, KeptMesh& mesh);
@@ -57,6 +60,7 @@ class SurfaceMorph {
   std::optional<uint32_t> OldVertexAt(GridPoint position) const;
   glm::vec3 OldPointIn(const Frame& frame, uint32_t vertex) const;
   glm::dvec3 OldPointEcef(uint32_t vertex) const;
+  void PlaceNew(const CutNode& node, const Sight& sight, const Frame& frame, KeptMesh& mesh);
   void Schedule(const CutNode& node, double most_m, KeptMesh& mesh) const;
 
   double now_s_ = 0;

@@ -69,7 +69,8 @@ class SurfaceMorphTest : public testing::Test {
 
   std::unique_ptr<DisplayList> List(const std::vector<CutNode>& cut, double now_s, bool jump = false) {
     auto list = std::make_unique<DisplayList>();
-    const Sight sight{eye_ecef_, -glm::normalize(eye_ecef_), 0.7, true};
+    Sight sight{eye_ecef_, -glm::normalize(eye_ecef_), 0.7, true};
+    sight.inwards_ecef[0] = inward_ecef_;
     state_.morph.Begin(now_s, jump);
     list->time_s = now_s;
     statistics_ = BuildSurface(cut, sight, kBound_px, state_, *list);
@@ -97,6 +98,7 @@ class SurfaceMorphTest : public testing::Test {
   };
   std::map<Quadcode, Built> pages_;
   glm::dvec3 eye_ecef_{};
+  glm::dvec3 inward_ecef_{};  // normal of the picture's one side; zero: it has none
   SurfaceState state_;
   MeshStatistics statistics_;
 };
@@ -106,6 +108,27 @@ TEST_F(SurfaceMorphTest, AFinerSurfaceStartsWhereTheCoarserOneWas) {
   const auto finer = List(CutTo(6, 50'000), 1);
   EXPECT_LT(Difference_px(*coarse, *finer, 1.0), 0.3);
   EXPECT_GT(Difference_px(*coarse, *finer, 3.0), 1.0) << "they differ once the finer one has arrived";
+}
+
+// The eye looks straight down, and the picture ends at the meridian under it: what lies to the west is not seen.
+TEST_F(SurfaceMorphTest, BesideThePictureItIsThereAtOnce) {
+  inward_ecef_ = glm::normalize(glm::cross(glm::dvec3(0, 0, 1), ToEcef({kLatitude, kLongitude, 0})));
+  List(CutTo(3, 60'000), 0, true);
+  const auto finer = List(CutTo(6, 50'000), 1);
+  double most_west_m = 0, most_east_m = 0;
+  int west = 0;
+  for (const ListVertex& vertex : *finer->vertices) {
+    const Quadcode node = finer->terrain_draws[vertex.draw()].node;
+    const int column = static_cast<int>(vertex.post()) % kPosts, row = static_cast<int>(vertex.post()) / kPosts;
+    if (column % kCells == 0 || row % kCells == 0) continue;
+    const double east_deg = node.Box().west_deg + node.SizeDegrees() * column / kCells - kLongitude;
+    double& most_m = east_deg < -node.SizeDegrees() ? most_west_m : most_east_m;
+    if (east_deg < -node.SizeDegrees()) ++west;
+    most_m = std::max(most_m, std::abs(static_cast<double>(vertex.rise_m)));
+  }
+  EXPECT_GT(west, 100);
+  EXPECT_EQ(most_west_m, 0);
+  EXPECT_GT(most_east_m, 1);
 }
 
 TEST_F(SurfaceMorphTest, AndArrivesWhereItBelongs) {
