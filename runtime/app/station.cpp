@@ -5,6 +5,8 @@
 #include "runtime/paging/terrain_height.h"
 #include "servers/stock_modules.h"
 
+#include <malloc.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -12,11 +14,13 @@ namespace belvedere {
 namespace {
 
 constexpr size_t kMostFailuresShown = 3;
+constexpr int kOwnMapping_bytes = 128 * 1024;  // from here on blocks go back to the system when they are freed (0009)
 
 }  // namespace
 
 Result<std::unique_ptr<Station>> Station::Start(const StationOptions& options, const Clock& clock,
                                                 std::unique_ptr<Context> context) {
+  mallopt(M_MMAP_THRESHOLD, kOwnMapping_bytes);
   std::unique_ptr<Station> station(new Station(clock, {options.render.colour_slots, options.render.overlay_slots}));
   if (Status status = station->StartPaging(options); !status.ok()) return status;
   ObjectTable::Options table;
