@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace belvedere {
 namespace {
@@ -60,21 +61,35 @@ struct PostSelection::LocalView {
     return (kCurvatureSpread * from_origin_m - std::min(0.0, double{page.min_height_m})) / kCurvature_m;
   }
 
-  // Greatest g over the triangles that the post splits, as a share of the quadnode's.
-  float ShareOfGreatest(int post, int level) const {
-    const float spread_m = page.spread_m[static_cast<size_t>(level)];
-    const TerrainVertex& vertex = page.vertices[static_cast<size_t>(post)];
-    const glm::vec3 place(vertex.x, vertex.y, vertex.z);
-    const glm::vec3 away = place - eye;
-    const float depth_m = glm::dot(away, forward);
-    if (depth_m <= 0) return 1;
+  // Of the triangles that the post splits, by their corners: the least depth, and the greatest g as a share of the
+  // quadnode's.
+  struct Corners {
+    float least_depth_m = kLeastDepth_m;
+    float share_of_greatest = 1;
+  };
+  Corners LookAtCorners(Post post, int level) const {
     constexpr auto kPerMetre = static_cast<float>(1.0 / kCurvature_m);
-    const glm::vec3 up = glm::vec3(0, 0, 1) + place * kPerMetre;
+    const glm::vec3 up = glm::vec3(0, 0, 1) + PlaceOf(post) * kPerMetre;
     const float along = glm::dot(up, forward);
-    const float here_m = glm::length(up * depth_m - along * away);
-    const float around_m = std::abs(along) * widest * (spread_m + moved_m);
-    const float stretch = (here_m + around_m) / depth_m + widest * (spread_m * kPerMetre + tilt);
-    return std::min(1.0F, stretch / greatest_stretch);
+    float least_depth_m = std::numeric_limits<float>::max();
+    float stretch = 0;
+    const Split split = SplitAt(post);
+    for (const Post corner : {split.end_a, split.end_b, split.apex_a, split.apex_b}) {
+      if (!corner.inside()) continue;
+      const glm::vec3 away = PlaceOf(corner) - eye;
+      const float depth_m = glm::dot(away, forward);
+      if (depth_m <= kLeastDepth_m) return {};  // what is behind the eye has no place in the picture
+      least_depth_m = std::min(least_depth_m, depth_m);
+      stretch = std::max(stretch, glm::length(up * depth_m - along * away) / depth_m);
+    }
+    stretch += widest * (std::abs(along) * moved_m / least_depth_m +
+                         page.spread_m[static_cast<size_t>(level)] * kPerMetre + tilt);
+    return {least_depth_m, std::min(1.0F, stretch / greatest_stretch)};
+  }
+
+  glm::vec3 PlaceOf(Post post) const {
+    const TerrainVertex& vertex = page.vertices[static_cast<size_t>(post.index())];
+    return {vertex.x, vertex.y, vertex.z};
   }
 
   // All triangles that the post splits lie beside the picture, and well so.
@@ -145,14 +160,18 @@ void PostSelection::Test(Post post, int level, const LocalView& view) {
   const float delta_m = view.page.deltas[index];
   // Whoever jumps to the other side of the world finds it round, also in the list that was made before the jump.
   if (delta_m > kAlwaysDrawn_m) return Draw(post, view);
-  // A quadnode that must serve although its own posts are too coarse draws what its relief asks and no more.
-  float error = std::max(0.0F, delta_m - view.left_over_m) * view.scale;
+  // A quadnode that must serve although its own posts are too coarse draws those that matter beside what it leaves.
+  float error = delta_m > view.left_over_m ? delta_m * view.scale : 0.0F;
   // Most posts are done with before their place is looked up in memory.
   float least_depth_m = view.perspective ? view.nearest_depth_m : 1.0F;
   const float stay = state == kDrawnBefore ? stay_ : 1.0F;
   if (error * stay > least_depth_m && view.perspective) least_depth_m = view.LeastDepth(post.index(), level);
   least_depth_m = std::max(least_depth_m, kLeastDepth_m);
-  if (error * stay > least_depth_m && view.greatest_stretch > 0) error *= view.ShareOfGreatest(post.index(), level);
+  if (error * stay > least_depth_m && view.greatest_stretch > 0) {
+    const LocalView::Corners corners = view.LookAtCorners(post, level);
+    error *= corners.share_of_greatest;
+    if (view.perspective) least_depth_m = std::max(least_depth_m, corners.least_depth_m);
+  }
   if (error * stay > least_depth_m && view.sides.any() && view.IsBeside(post.index(), level)) {
     error *= static_cast<float>(kShareBesidePicture);
     left_out_beside_ |= error * stay <= least_depth_m;

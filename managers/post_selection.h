@@ -2,21 +2,22 @@
 // and hands out the triangles.
 //
 // It is a greedy full search: two root triangles are bisected, and a triangle is split at the middle of its hypotenuse
-// when the delta value of that post, seen from the nearest point of the triangles that it splits, is over the bound. A
+// when the delta value of that post, seen at the least depth of the triangles that it splits, is over the bound. A
 // post needs its two parents (bisection.h), which are then drawn too, whatever their own error; so the triangles meet
 // edge to edge. A post is looked at once, and only when a triangle that it would split exists: the work is proportional
 // to what is drawn.
 //
-// Slant. A quadnode's error_scale has the greatest g (cut.h) over all of it; each post takes the greatest over the
-// triangles that it splits where that is less. With u and a the vertical at the post and its place from the eye, z its
-// depth and f the line of view, g there is |u - (u.f) a / z|. Another point, s away from the post, is seen by an eye
-// that has moved by d at
-//     w = (a + s - d) / (z + (s - d).f),  hence  w - a / z = ((s - d) - w (s - d).f) / z.
-// So with r the most that |s| and |d| are together, and W the most that |w| is in the picture,
-//     g <= |u - (u.f) a / z| + |u.f| W r / z + W |change of u|.
-// Verticals are taken to be those of a sphere through the frame's origin, which change by s over its radius; how far
-// those of the ellipsoid are from them is added. All this is for any eye within kKeepMargin of the nearest depth, so
-// that triangles can be kept (kept_triangles.h). It is a bound for what is seen; what is not has no g that matters.
+// Slant and depth. A quadnode's error_scale has the greatest g (cut.h) over all of it and its least depth; each post
+// takes those of the triangles that it splits, found at their corners. With u the vertical at the post, f the line of
+// view and w the place of a point in the picture, that is a / z with its place a from the eye and its depth z, g there
+// is |u - (u.f) w|: convex in w, and so no more within a triangle than at its corners, as long as all are before the
+// eye. An eye that has moved by d sees the point at w', where w' - w = (w' (d.f) - d) / z; so with W the most that |w'|
+// is in the picture, and z the least depth,
+//     g <= greatest |u - (u.f) w| of the corners + |u.f| W |d| / z + W |change of u|.
+// Verticals are taken to be those of a sphere through the frame's origin, which change by the triangles' spread over
+// its radius; how far those of the ellipsoid are from them is added. All this is for any eye within kKeepMargin of the
+// nearest depth, so that triangles can be kept (kept_triangles.h). It is a bound for what is seen; what is not has no g
+// that matters.
 //
 // Triangles that lie beside the picture, and by more than kBesideGuard away from it, need keep their error under a
 // looser bound only: kShareBesidePicture of it counts. They lie there as well for any later eye, whose picture's sides

@@ -1,6 +1,7 @@
 #include "preproc/build.h"
 
 #include "preproc/composite.h"
+#include "preproc/finest_surface.h"
 #include "preproc/page_sink.h"
 #include "preproc/plan.h"
 #include "preproc/progress.h"
@@ -92,6 +93,7 @@ class LayerBuilder {
       }
       children.wait();
       deviations = BoundPage(*page, &finer);
+      page->deltas = DeltasFromChildren(node, *page, finer);
     } else {
       deviations = BoundPage(*page, nullptr);
     }

@@ -11,17 +11,20 @@
 #include "runtime/paging/page.h"
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
 namespace belvedere {
 
-// By how much the finest surface lies over (high) and under (low) the triangles of a page, metres, for each of its
-// cells; row by row. Both sides are kept apart until the page is stored: what one level adds and the next takes away
-// must not count twice.
+// By how much the finest surface lies over (high) and under (low) the triangles of a page, for each of its cells; row
+// by row. In halves of a millimetre, which are exact: heights are millimetres, and posts of one level lie half-way
+// between those of the one above. Both sides are kept apart until the page is stored: what one level adds and the next
+// takes away must not count twice.
 struct Deviation {
-  float low = 0, high = 0;
+  int32_t low = 0, high = 0;
 };
+inline constexpr double kMetresPerDeviation = 0.0005;
 using CellDeviations = std::vector<Deviation>;  // kCells^2
 
 // What the levels above need of a page that is done.

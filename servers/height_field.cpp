@@ -1,7 +1,8 @@
 #include "servers/height_field.h"
 
 #include "runtime/base/status.h"
-#include "runtime/earth/ellipsoid.h"
+#include "runtime/earth/post_grid.h"
+#include "runtime/earth/units.h"
 
 #include <cmath>
 
@@ -56,17 +57,6 @@ Sample SampleBetween(const ElevationPage& page, double column, double row) {
 }
 
 }  // namespace
-
-RowGeometry RowAt(double latitude_deg) {
-  const double latitude = latitude_deg * kRadiansPerDegree;
-  RowGeometry row;
-  row.sin_latitude = std::sin(latitude);
-  row.cos_latitude = std::abs(latitude_deg) == 90.0 ? 0.0 : std::cos(latitude);
-  const double squared = 1.0 - kEccentricitySquared * row.sin_latitude * row.sin_latitude;
-  row.prime_vertical_m = kEquatorialRadius_m / std::sqrt(squared);
-  row.meridian_m = row.prime_vertical_m * (1.0 - kEccentricitySquared) / squared;
-  return row;
-}
 
 HeightField SampleHeights(Quadcode node, const ElevationPage* page, Quadcode heights_node, double exaggeration) {
   HeightField field;

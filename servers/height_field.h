@@ -22,12 +22,4 @@ struct HeightField {
 // `exaggeration`.
 HeightField SampleHeights(Quadcode node, const ElevationPage* page, Quadcode heights_node, double exaggeration);
 
-// Latitude of each row of posts of the quadnode, and what the Earth's shape makes of it.
-struct RowGeometry {
-  double sin_latitude = 0, cos_latitude = 0;  // cosine exactly 0 at a pole
-  double prime_vertical_m = 0;                // radius of curvature east-west
-  double meridian_m = 0;                      // and north-south
-};
-RowGeometry RowAt(double latitude_deg);
-
 }  // namespace belvedere

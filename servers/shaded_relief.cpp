@@ -1,8 +1,8 @@
 #include "servers/shaded_relief.h"
 
 #include "runtime/base/status.h"
+#include "runtime/earth/post_grid.h"
 #include "runtime/earth/units.h"
-#include "servers/height_field.h"
 #include "servers/mip_levels.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "servers/slope_tint.h"
 
+#include "runtime/earth/post_grid.h"
 #include "runtime/earth/units.h"
-#include "servers/height_field.h"
 #include "servers/mip_levels.h"
 #include "servers/texel_heights.h"
 

@@ -3,7 +3,8 @@
 #include "runtime/base/status.h"
 #include "runtime/earth/ellipsoid.h"
 #include "runtime/earth/frame.h"
-#include "servers/delta_values.h"
+#include "runtime/earth/post_grid.h"
+#include "runtime/paging/delta_values.h"
 #include "servers/height_field.h"
 
 #include <glm/common.hpp>
@@ -16,37 +17,6 @@
 
 namespace belvedere {
 namespace {
-
-struct ColumnGeometry {
-  double sin_longitude = 0, cos_longitude = 0;
-};
-
-std::array<RowGeometry, kPosts> RowsOf(Quadcode node) {
-  std::array<RowGeometry, kPosts> rows;
-  GridPoint point = node.SouthWest();
-  for (RowGeometry& row : rows) {
-    row = RowAt(point.latitude_deg());
-    point.y += node.PostSpacing();
-  }
-  return rows;
-}
-
-std::array<ColumnGeometry, kPosts> ColumnsOf(Quadcode node) {
-  std::array<ColumnGeometry, kPosts> columns;
-  GridPoint point = node.SouthWest();
-  for (ColumnGeometry& column : columns) {
-    const double longitude = point.longitude_deg() * kRadiansPerDegree;
-    column = {std::sin(longitude), std::cos(longitude)};
-    point.x += node.PostSpacing();  // wraps at 180 E, where 180 W has the same bits
-  }
-  return columns;
-}
-
-glm::dvec3 EcefAt(const RowGeometry& row, const ColumnGeometry& column, double height_m) {
-  const double horizontal = (row.prime_vertical_m + height_m) * row.cos_latitude;
-  return {horizontal * column.cos_longitude, horizontal * column.sin_longitude,
-          (row.prime_vertical_m * (1.0 - kEccentricitySquared) + height_m) * row.sin_latitude};
-}
 
 // Octahedral map of a unit vector to two snorm16 (Cigolle et al., "A survey of efficient representations for
 // independent unit vectors", 2014).
@@ -81,12 +51,11 @@ glm::vec3 NormalAt(const RowGeometry& row, const ColumnGeometry& column, const g
 std::vector<TerrainVertex> VerticesOf(Quadcode node, const HeightField& field) {
   const Frame frame = FrameOf(node);
   const glm::mat3 ecef_from_frame(frame.ecef_from_frame);
-  const std::array<RowGeometry, kPosts> rows = RowsOf(node);
-  const std::array<ColumnGeometry, kPosts> columns = ColumnsOf(node);
+  const PostGrid grid(node);
   std::vector<TerrainVertex> vertices(kVerticesPerPage);
   size_t index = 0;
-  for (const RowGeometry& row : rows) {
-    for (const ColumnGeometry& column : columns) {
+  for (const RowGeometry& row : grid.rows) {
+    for (const ColumnGeometry& column : grid.columns) {
       const glm::dvec3 local = frame.ToFrame(EcefAt(row, column, field.height_m[index]));
       const glm::vec3 normal =
           NormalAt(row, column, ecef_from_frame, field.slope_east[index], field.slope_north[index]);
@@ -123,14 +92,11 @@ void Lay(const std::vector<glm::dvec3>& posts_ecef, Side side, const Frame& fram
   }
 }
 
-// How far the ellipsoid rises over a straight line across one cell of the quadnode.
-double CellSagitta(Quadcode node) {
-  const double cell_radians = node.SizeDegrees() / kCells * kRadiansPerDegree;
-  const GeoBox box = node.Box();
-  const double nearest_equator_deg = box.south_deg < 0 ? box.north_deg : box.south_deg;
-  const double north_m = cell_radians * kEquatorialRadius_m;
-  const double east_m = north_m * std::cos(nearest_equator_deg * kRadiansPerDegree);
-  return (north_m * north_m + east_m * east_m) / (8.0 * kPolarRadius_m);
+// The builder's delta values are those of the page's own posts, in their places.
+bool CanUseStored(const TerrainInput& input) {
+  return input.heights != nullptr && input.heights_node == input.node && !input.heights->deltas.steps.empty() &&
+         input.exaggeration == 1 &&
+         std::all_of(input.laid_ecef.begin(), input.laid_ecef.end(), [](const auto& laid) { return laid.empty(); });
 }
 
 }  // namespace
@@ -138,18 +104,17 @@ double CellSagitta(Quadcode node) {
 BoundingSphere BoundsOf(Quadcode node, double min_height_m, double max_height_m) {
   // The border at both heights says all: seen from the middle, nothing within a shell this small is further than its
   // rim.
-  const std::array<RowGeometry, kPosts> rows = RowsOf(node);
-  const std::array<ColumnGeometry, kPosts> columns = ColumnsOf(node);
+  const PostGrid grid(node);
   std::vector<glm::dvec3> points;
   points.reserve(8 * kPosts + 2);
   for (const double height_m : {min_height_m, max_height_m}) {
     for (size_t i = 0; i < kPosts; ++i) {
-      points.push_back(EcefAt(rows.front(), columns[i], height_m));
-      points.push_back(EcefAt(rows.back(), columns[i], height_m));
-      points.push_back(EcefAt(rows[i], columns.front(), height_m));
-      points.push_back(EcefAt(rows[i], columns.back(), height_m));
+      points.push_back(grid.At(i, 0, height_m));
+      points.push_back(grid.At(i, kCells, height_m));
+      points.push_back(grid.At(0, i, height_m));
+      points.push_back(grid.At(kCells, i, height_m));
     }
-    points.push_back(EcefAt(rows[kPosts / 2], columns[kPosts / 2], height_m));
+    points.push_back(grid.At(kCells / 2, kCells / 2, height_m));
   }
   const glm::dmat3 axes = FrameOf(node).ecef_from_frame;  // a box along the ground is the tightest to start from
   glm::dvec3 least(std::numeric_limits<double>::max());
@@ -173,14 +138,12 @@ BoundingSphere BoundsOf(Quadcode node, double min_height_m, double max_height_m)
 
 std::vector<glm::dvec3> BorderPosts(const TerrainInput& input, Side side) {
   const HeightField field = SampleHeights(input.node, input.heights, input.heights_node, input.exaggeration);
-  const std::array<RowGeometry, kPosts> rows = RowsOf(input.node);
-  const std::array<ColumnGeometry, kPosts> columns = ColumnsOf(input.node);
+  const PostGrid grid(input.node);
   std::vector<glm::dvec3> posts;
   posts.reserve(kPosts);
   for (int along = 0; along < kPosts; ++along) {
-    const int post = PostOf(side, along);
-    posts.push_back(EcefAt(rows[static_cast<size_t>(post / kPosts)], columns[static_cast<size_t>(post % kPosts)],
-                           field.height_m[static_cast<size_t>(post)]));
+    const auto post = static_cast<size_t>(PostOf(side, along));
+    posts.push_back(grid.At(post % kPosts, post / kPosts, field.height_m[post]));
   }
   return posts;
 }
@@ -235,9 +198,8 @@ std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input) {
       Lay(input.laid_ecef[side], static_cast<Side>(side), FrameOf(input.node), *page);
     }
   }
-  DeltaValues values = DeltaValuesOf(page->vertices, errors_m);
-  page->deltas = std::move(values.deltas_m);
-  page->spread_m = values.spread_m;
+  page->deltas = CanUseStored(input) ? RestoreDeltas(input.heights->deltas) : DeltaValuesOf(page->vertices, errors_m);
+  page->spread_m = SpreadsOf(page->vertices);
   const BoundingSphere bounds = BoundsOf(input.node, page->min_height_m, page->max_height_m);
   page->center_ecef = bounds.center_ecef;
   page->radius_m = bounds.radius_m;

@@ -87,4 +87,22 @@ constexpr std::array<Post, 4> ChildrenOf(Post post) {
           Post{post.column - half, post.row + half}, Post{post.column + half, post.row + half}};
 }
 
+inline constexpr std::array<Post, 4> kCorners{Post{0, 0}, Post{kCells, 0}, Post{0, kCells}, Post{kCells, kCells}};
+
+// Calls visit(post) for every post of one level.
+template <typename Visit>
+void ForEachPost(int level, const Visit& visit) {
+  const int span = HalfSpan(level);
+  if (level % 2 == 0) {
+    for (int row = span; row < kPosts; row += 2 * span) {
+      for (int column = span; column < kPosts; column += 2 * span) visit(Post{column, row});
+    }
+    return;
+  }
+  for (int row = 0; row < kPosts; row += span) {
+    const int first = (row / span) % 2 == 0 ? span : 0;
+    for (int column = first; column < kPosts; column += 2 * span) visit(Post{column, row});
+  }
+}
+
 }  // namespace belvedere

@@ -26,7 +26,7 @@
 
 namespace belvedere {
 
-inline constexpr int kDatasetVersion = 1;
+inline constexpr int kDatasetVersion = 2;
 inline constexpr int kMaxDatasetLayers = 256;
 
 enum class LayerKind : uint8_t { kElevation = 1, kImagery = 2 };

@@ -53,6 +53,14 @@ inline constexpr int kErrorBlocks = 16;  // along each side
 inline constexpr int kBlockCells = kCells / kErrorBlocks;
 using ErrorBlocks = std::array<float, static_cast<size_t>(kErrorBlocks) * kErrorBlocks>;  // row by row
 
+// Delta values in the logarithm: post i has greatest_m / 2^(steps[i] / kDeltaStepsPerOctave), or a little less.
+inline constexpr int kDeltaStepsPerOctave = 8;
+struct StoredDeltas {
+  float greatest_m = 0;
+  std::vector<uint8_t> steps;  // kVerticesPerPage, or none
+  bool operator==(const StoredDeltas&) const = default;
+};
+
 struct ElevationPage final : Page {
   std::vector<int32_t> heights_mm;  // kElevationSide^2
   float min_m = 0, max_m = 0;       // over this page's posts and all finer pages under it
@@ -60,12 +68,17 @@ struct ElevationPage final : Page {
   // triangles; 0 where nothing is finer. block_errors_m says it of each block, error_m of them all.
   ErrorBlocks block_errors_m{};
   float error_m = 0;
+  // Delta values (TerrainPage::deltas) at an exaggeration of 1, made by the builder from the finest posts there are.
+  // None where nothing is finer than the page: there its own posts say all.
+  StoredDeltas deltas;
 
   // Post (column, row), each -kApron .. kPosts - 1 + kApron.
   int32_t at(int column, int row) const {
     return heights_mm[static_cast<size_t>((row + kApron) * kElevationSide + column + kApron)];
   }
-  size_t bytes() const override { return sizeof(*this) + heights_mm.capacity() * sizeof(int32_t); }
+  size_t bytes() const override {
+    return sizeof(*this) + heights_mm.capacity() * sizeof(int32_t) + deltas.steps.capacity();
+  }
 };
 
 // ---- images: colour from the dataset, or what a read module makes of heights ---------------------------------------
@@ -104,7 +117,8 @@ struct TerrainPage final : Page {
   Quadcode node;
   std::vector<TerrainVertex> vertices;  // kVerticesPerPage
   // Delta value of each post: an upper bound, in metres, of the distance between the finest surface and the two
-  // triangles that the post splits (bisection.h), if they are drawn whole; what finer pages add is part of it.
+  // triangles that the post splits (bisection.h), if they are drawn whole; what finer pages add is part of it
+  // (delta_values.h).
   std::vector<float> deltas;  // kVerticesPerPage
   // Every point of the triangles that a post of bisection level l splits lies within spread_m[l] of it.
   std::array<float, kBisections> spread_m{};

@@ -1,5 +1,7 @@
 #include "runtime/paging/page_codec.h"
 
+#include "runtime/earth/bisection.h"
+
 #include <zstd.h>
 
 #include <algorithm>
@@ -14,12 +16,14 @@ constexpr uint8_t kCodecVersion = 1;
 constexpr uint8_t kKindElevation = 1;
 constexpr uint8_t kKindImage = 2;
 constexpr uint16_t kFlagAlpha = 1;
+constexpr uint16_t kFlagDeltas = 2;
 constexpr size_t kCheckedHeaderBytes = 16;
 constexpr int kElevationZstdLevel = 3;
 constexpr int kImageZstdLevel = 1;
 constexpr size_t kHeights = static_cast<size_t>(kElevationSide) * static_cast<size_t>(kElevationSide);
 constexpr size_t kElevationNumbers = 3 + ErrorBlocks{}.size();
 constexpr size_t kElevationRawBytes = kElevationNumbers * sizeof(float) + 4 * kHeights;
+constexpr size_t kDeltaRawBytes = sizeof(float) + kVerticesPerPage;
 
 using Crc32cTables = std::array<std::array<uint32_t, 256>, 8>;
 
@@ -51,6 +55,14 @@ void PutU32(std::vector<uint8_t>& out, uint32_t value) {
 uint32_t GetU32(const uint8_t* bytes) {
   return static_cast<uint32_t>(bytes[0]) | static_cast<uint32_t>(bytes[1]) << 8 |
          static_cast<uint32_t>(bytes[2]) << 16 | static_cast<uint32_t>(bytes[3]) << 24;
+}
+
+void SetFloat(uint8_t* bytes, float value) {
+  const auto bits = std::bit_cast<uint32_t>(value);
+  for (size_t byte = 0; byte < 4; ++byte) bytes[byte] = static_cast<uint8_t>(bits >> (8 * byte));
+}
+float GetFloat(const uint8_t* bytes) {
+  return std::bit_cast<float>(GetU32(bytes));
 }
 
 // One zstd context a thread: creating one costs as much as a small page.
@@ -157,6 +169,34 @@ void DecodePlane(const uint8_t* residuals, std::vector<uint8_t>& plane) {
   }
 }
 
+// A post's step is told from the parent with the greater delta value. Level by level, so that the parents come first.
+uint8_t GuessStep(const std::vector<uint8_t>& steps, Post post) {
+  const Split split = SplitAt(post);
+  const uint8_t a = split.apex_a.inside() ? steps[static_cast<size_t>(split.apex_a.index())] : uint8_t{255};
+  const uint8_t b = split.apex_b.inside() ? steps[static_cast<size_t>(split.apex_b.index())] : uint8_t{255};
+  return std::min(a, b);
+}
+
+void PutSteps(const std::vector<uint8_t>& steps, uint8_t* out) {
+  for (const Post corner : kCorners) *out++ = steps[static_cast<size_t>(corner.index())];
+  for (int level = 0; level < kBisectionLevels; ++level) {
+    ForEachPost(level, [&](Post post) {
+      *out++ = static_cast<uint8_t>(steps[static_cast<size_t>(post.index())] - GuessStep(steps, post));
+    });
+  }
+}
+
+std::vector<uint8_t> GetSteps(const uint8_t* in) {
+  std::vector<uint8_t> steps(kVerticesPerPage);
+  for (const Post corner : kCorners) steps[static_cast<size_t>(corner.index())] = *in++;
+  for (int level = 0; level < kBisectionLevels; ++level) {
+    ForEachPost(level, [&](Post post) {
+      steps[static_cast<size_t>(post.index())] = static_cast<uint8_t>(*in++ + GuessStep(steps, post));
+    });
+  }
+  return steps;
+}
+
 }  // namespace
 
 uint32_t Crc32c(std::span<const uint8_t> bytes, uint32_t crc) {
@@ -177,13 +217,11 @@ uint32_t Crc32c(std::span<const uint8_t> bytes, uint32_t crc) {
 std::vector<uint8_t> EncodeElevation(const ElevationPage& page) {
   BELVEDERE_CHECK(page.heights_mm.size() == kHeights);
   constexpr size_t kSide = static_cast<size_t>(kElevationSide);
-  std::vector<uint8_t> raw(kElevationRawBytes);
+  const bool has_deltas = !page.deltas.steps.empty();
+  std::vector<uint8_t> raw(kElevationRawBytes + (has_deltas ? kDeltaRawBytes : 0));
   std::array<float, kElevationNumbers> numbers{page.min_m, page.max_m, page.error_m};
   std::copy(page.block_errors_m.begin(), page.block_errors_m.end(), numbers.begin() + 3);
-  for (size_t i = 0; i < numbers.size(); ++i) {
-    const auto bits = std::bit_cast<uint32_t>(numbers[i]);
-    for (size_t byte = 0; byte < 4; ++byte) raw[4 * i + byte] = static_cast<uint8_t>(bits >> (8 * byte));
-  }
+  for (size_t i = 0; i < numbers.size(); ++i) SetFloat(&raw[4 * i], numbers[i]);
   uint8_t* planes = raw.data() + kElevationNumbers * sizeof(float);
   for (size_t row = 0; row < kSide; ++row) {
     uint32_t step_before = 0;
@@ -197,21 +235,27 @@ std::vector<uint8_t> EncodeElevation(const ElevationPage& page) {
         planes[byte * kHeights + at] = static_cast<uint8_t>(residual >> (8 * byte));
     }
   }
-  return Wrap(kKindElevation, 0, raw, kElevationZstdLevel);
+  if (has_deltas) {
+    BELVEDERE_CHECK(page.deltas.steps.size() == kVerticesPerPage);
+    uint8_t* deltas = raw.data() + kElevationRawBytes;
+    SetFloat(deltas, page.deltas.greatest_m);
+    PutSteps(page.deltas.steps, deltas + sizeof(float));
+  }
+  return Wrap(kKindElevation, has_deltas ? kFlagDeltas : uint16_t{0}, raw, kElevationZstdLevel);
 }
 
 Result<std::shared_ptr<ElevationPage>> DecodeElevation(std::span<const uint8_t> bytes) {
   if (Status status = CheckHeader(bytes, kKindElevation); !status.ok()) return status;
-  const auto raw = Unwrap(bytes, kElevationRawBytes);
+  const bool has_deltas = (bytes[6] & kFlagDeltas) != 0;
+  const auto raw = Unwrap(bytes, kElevationRawBytes + (has_deltas ? kDeltaRawBytes : 0));
   if (!raw.ok()) return raw.status();
   constexpr size_t kSide = static_cast<size_t>(kElevationSide);
   auto page = std::make_shared<ElevationPage>();
-  page->min_m = std::bit_cast<float>(GetU32(raw->data()));
-  page->max_m = std::bit_cast<float>(GetU32(raw->data() + 4));
-  page->error_m = std::bit_cast<float>(GetU32(raw->data() + 8));
-  for (size_t i = 0; i < page->block_errors_m.size(); ++i) {
-    page->block_errors_m[i] = std::bit_cast<float>(GetU32(raw->data() + 4 * (3 + i)));
-  }
+  page->min_m = GetFloat(raw->data());
+  page->max_m = GetFloat(raw->data() + 4);
+  page->error_m = GetFloat(raw->data() + 8);
+  for (size_t i = 0; i < page->block_errors_m.size(); ++i)
+    page->block_errors_m[i] = GetFloat(raw->data() + 4 * (3 + i));
   page->heights_mm.resize(kHeights);
   const uint8_t* planes = raw->data() + kElevationNumbers * sizeof(float);
   for (size_t row = 0; row < kSide; ++row) {
@@ -225,6 +269,11 @@ Result<std::shared_ptr<ElevationPage>> DecodeElevation(std::span<const uint8_t> 
       const uint32_t below = row > 0 ? static_cast<uint32_t>(page->heights_mm[at - kSide]) : 0;
       page->heights_mm[at] = static_cast<int32_t>(below + step);
     }
+  }
+  if (has_deltas) {
+    const std::span<const uint8_t> deltas = raw->subspan(kElevationRawBytes);
+    page->deltas.greatest_m = GetFloat(deltas.data());
+    page->deltas.steps = GetSteps(deltas.data() + sizeof(float));
   }
   return page;
 }

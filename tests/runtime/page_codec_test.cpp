@@ -50,6 +50,20 @@ TEST(PageCodec, ElevationComesBackToTheBit) {
   EXPECT_EQ((*back)->block_errors_m, page.block_errors_m);
 }
 
+TEST(PageCodec, DeltaValuesComeBackToTheBitWhereThereAreAny) {
+  ElevationPage page = Hills(7);
+  const auto without = DecodeElevation(EncodeElevation(page));
+  ASSERT_TRUE(without.ok()) << without.message();
+  EXPECT_TRUE((*without)->deltas.steps.empty());
+  std::mt19937 random(8);
+  page.deltas.greatest_m = 321.5f;
+  for (int i = 0; i < kVerticesPerPage; ++i) page.deltas.steps.push_back(static_cast<uint8_t>(random()));
+  const auto with = DecodeElevation(EncodeElevation(page));
+  ASSERT_TRUE(with.ok()) << with.message();
+  EXPECT_EQ((*with)->deltas, page.deltas);
+  EXPECT_EQ((*with)->heights_mm, page.heights_mm);
+}
+
 TEST(PageCodec, ElevationHoldsTheWholeRangeOfInt32) {
   ElevationPage page = Hills(2);
   page.heights_mm[0] = INT32_MIN;

@@ -1,7 +1,7 @@
 #include "servers/slope_tint.h"
 
+#include "runtime/earth/post_grid.h"
 #include "runtime/earth/units.h"
-#include "servers/height_field.h"
 #include "tests/servers/image_test_pages.h"
 #include "tests/servers/terrain_test_pages.h"
 

@@ -256,6 +256,26 @@ TEST(TerrainBuilder, WhatABlockLeavesOutRaisesTheDeltaValuesThereAlone) {
   EXPECT_EQ(delta(*cliff, 53, 27), delta(*smooth, 53, 27));
 }
 
+// The builder's delta values hold for the page's own posts, where they are.
+TEST(TerrainBuilder, TheDatasetsDeltaValuesAreTakenWhereTheyHold) {
+  const Quadcode node = Quadcode::Containing(37, -118, 9);
+  const auto heights = MakeElevation(node, WavyHeight);
+  const auto without = BuildTerrain({node, heights.get(), node, true, 1});
+  heights->deltas.greatest_m = 64;
+  heights->deltas.steps.assign(kVerticesPerPage, kDeltaStepsPerOctave);
+  const auto with = BuildTerrain({node, heights.get(), node, true, 1});
+  for (size_t post = 0; post < kVerticesPerPage; ++post) ASSERT_NEAR(with->deltas[post], 32, 1e-3);
+  EXPECT_EQ(with->spread_m, without->spread_m);
+
+  const auto exaggerated = BuildTerrain({node, heights.get(), node, true, 2});
+  EXPECT_GT(exaggerated->deltas[kVerticesPerPage / 2], 1.9 * without->deltas[kVerticesPerPage / 2]);
+  const auto below = BuildTerrain({node.Child(0), heights.get(), node, false, 1});
+  EXPECT_LT(below->deltas[kPosts + 1], 1);
+  TerrainInput laid{node, heights.get(), node, true, 1};
+  laid.laid_ecef[0] = BorderPosts(laid, Side::kWest);
+  EXPECT_EQ(BuildTerrain(laid)->deltas, without->deltas);
+}
+
 TEST(TerrainBuilder, TheSphereHoldsTheNodeAndAllUnderIt) {
   for (const Quadcode node :
        {Quadcode::Root(3), Quadcode::Root(31), Quadcode::Containing(-89.9, 10, 4), Quadcode::Containing(46, 8, 10)}) {

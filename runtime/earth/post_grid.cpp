@@ -1,0 +1,49 @@
+#include "runtime/earth/post_grid.h"
+
+#include "runtime/earth/ellipsoid.h"
+#include "runtime/earth/units.h"
+
+#include <cmath>
+
+namespace belvedere {
+
+RowGeometry RowAt(double latitude_deg) {
+  const double latitude = latitude_deg * kRadiansPerDegree;
+  RowGeometry row;
+  row.sin_latitude = std::sin(latitude);
+  row.cos_latitude = std::abs(latitude_deg) == 90.0 ? 0.0 : std::cos(latitude);
+  const double squared = 1.0 - kEccentricitySquared * row.sin_latitude * row.sin_latitude;
+  row.prime_vertical_m = kEquatorialRadius_m / std::sqrt(squared);
+  row.meridian_m = row.prime_vertical_m * (1.0 - kEccentricitySquared) / squared;
+  return row;
+}
+
+glm::dvec3 EcefAt(const RowGeometry& row, const ColumnGeometry& column, double height_m) {
+  const double horizontal = (row.prime_vertical_m + height_m) * row.cos_latitude;
+  return {horizontal * column.cos_longitude, horizontal * column.sin_longitude,
+          (row.prime_vertical_m * (1.0 - kEccentricitySquared) + height_m) * row.sin_latitude};
+}
+
+PostGrid::PostGrid(Quadcode node, int per_cell) {
+  const uint32_t spacing = node.PostSpacing() / static_cast<uint32_t>(per_cell);
+  const int points = kCells * per_cell + 1;
+  GridPoint point = node.SouthWest();
+  for (int i = 0; i < points; ++i) {
+    rows.push_back(RowAt(point.latitude_deg()));
+    const double longitude = point.longitude_deg() * kRadiansPerDegree;
+    columns.push_back({std::sin(longitude), std::cos(longitude)});
+    point.x += spacing;  // wraps at 180 E, where 180 W has the same bits
+    point.y += spacing;
+  }
+}
+
+double CellSagitta(Quadcode node) {
+  const double cell_radians = node.SizeDegrees() / kCells * kRadiansPerDegree;
+  const GeoBox box = node.Box();
+  const double nearest_equator_deg = box.south_deg < 0 ? box.north_deg : box.south_deg;
+  const double north_m = cell_radians * kEquatorialRadius_m;
+  const double east_m = north_m * std::cos(nearest_equator_deg * kRadiansPerDegree);
+  return (north_m * north_m + east_m * east_m) / (8.0 * kPolarRadius_m);
+}
+
+}  // namespace belvedere

@@ -1,0 +1,478 @@
+#include "runtime/paging/delta_values.h"
+
+#include "runtime/base/status.h"
+#include "runtime/earth/bisection.h"
+#include "runtime/earth/post_grid.h"
+#include "runtime/earth/units.h"
+
+#include <glm/geometric.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+namespace belvedere {
+namespace {
+
+constexpr size_t kSpare = 3;  // at the end of rasters, so that four can be loaded at once from any
+
+// Four posts of a row at once; compilers have this as a type of their own.
+typedef float Lane4 __attribute__((vector_size(16)));
+
+Lane4 Load(const float* from) {
+  Lane4 lanes;
+  std::memcpy(&lanes, from, sizeof(lanes));
+  return lanes;
+}
+
+Lane4 SquareRoots(const Lane4& squared) {
+  const Lane4 roots{std::sqrt(squared[0]), std::sqrt(squared[1]), std::sqrt(squared[2]), std::sqrt(squared[3])};
+  return roots;
+}
+
+float GreatestOf(const Lane4& lanes) {
+  return std::max(std::max(lanes[0], lanes[1]), std::max(lanes[2], lanes[3]));
+}
+
+// The most of the blocks that the four cells around a post lie in.
+float ErrorAround(Post post, const ErrorBlocks& errors_m) {
+  float most = 0;
+  for (int row = std::max(post.row - 1, 0); row <= std::min(post.row, kCells - 1); ++row) {
+    for (int column = std::max(post.column - 1, 0); column <= std::min(post.column, kCells - 1); ++column) {
+      most = std::max(most, errors_m[static_cast<size_t>(row / kBlockCells * kErrorBlocks + column / kBlockCells)]);
+    }
+  }
+  return most;
+}
+
+glm::vec3 PlaceOf(const TerrainVertex& vertex) {
+  return {vertex.x, vertex.y, vertex.z};
+}
+
+float SquaredDistance(const glm::vec3& a, const glm::vec3& b) {
+  const glm::vec3 between = a - b;
+  return glm::dot(between, between);
+}
+
+// Points in rows, from the south-west; relative to something near, where floats are finest.
+class PointRaster {
+ public:
+  explicit PointRaster(size_t points) : x_(points + kSpare), y_(points + kSpare), z_(points + kSpare) {}
+  void Set(size_t index, const glm::vec3& point) {
+    x_[index] = point.x;
+    y_[index] = point.y;
+    z_[index] = point.z;
+  }
+  glm::vec3 at(size_t index) const { return {x_[index], y_[index], z_[index]}; }
+
+  // Of points index .. index + 3 from four of a line.
+  Lane4 SquaredDistances(size_t index, const Lane4& along, const glm::vec3& start, const glm::vec3& step) const {
+    const Lane4 dx = Load(&x_[index]) - (start.x + along * step.x);
+    const Lane4 dy = Load(&y_[index]) - (start.y + along * step.y);
+    const Lane4 dz = Load(&z_[index]) - (start.z + along * step.z);
+    return dx * dx + dy * dy + dz * dz;
+  }
+
+ private:
+  std::vector<float> x_, y_, z_;
+};
+
+// Calls add(index, along) for four points of a row at a time, `along` being how far each is from the first. Returns the
+// most of what it returned for the row's points, and of `greatest`.
+template <typename Add>
+inline Lane4 MostOfRow(size_t first, int points, Lane4 greatest, const Add& add) {
+  const auto most = [](const Lane4& a, const Lane4& b) { return a > b ? a : b; };
+  Lane4 along{0, 1, 2, 3};
+  int from = 0;
+  for (; from + 4 <= points; from += 4, along += 4.0F)
+    greatest = most(add(first + static_cast<size_t>(from), along), greatest);
+  if (from == points) return greatest;
+  const Lane4 nothing{0, 0, 0, 0};
+  const Lane4 last = static_cast<float>(points - 1) + nothing;
+  const Lane4 rest = add(first + static_cast<size_t>(from), along);
+  return most(along <= last ? rest : nothing, greatest);
+}
+
+// The surfaces that follow have values at posts, which a triangle takes linearly from its corners; points, kPerCell to
+// a cell; and AddRow, which raises `greatest` to the most, over points (first .. last, row), of how far the surface is
+// from values that begin at `start` and move by `step` a point; ErrorOf makes metres of it. kTips: also at the tips of
+// triangles the surface lies elsewhere.
+
+// The posts themselves, and what finer pages may add around each.
+class OwnSurface {
+ public:
+  using Value = glm::vec3;
+  static constexpr int kPerCell = 1;
+  static constexpr bool kTips = false;
+
+  OwnSurface(std::span<const TerrainVertex> vertices, const ErrorBlocks& errors_m) {
+    const glm::vec3 middle = PlaceOf(vertices[kVerticesPerPage / 2]);
+    for (size_t i = 0; i < kVerticesPerPage; ++i) {
+      posts_.Set(i, PlaceOf(vertices[i]) - middle);
+      left_out_[i] = ErrorAround(Post{static_cast<int>(i) % kPosts, static_cast<int>(i) / kPosts}, errors_m);
+    }
+  }
+
+  glm::vec3 at(Post post) const { return posts_.at(static_cast<size_t>(post.index())); }
+
+  // How far the finest surface around the post may be from the middle between a and b, if that is drawn.
+  float ErrorBetween(Post post, Post a, Post b) const {
+    return std::sqrt(SquaredDistance(at(post), 0.5F * (at(a) + at(b)))) + left_out_[static_cast<size_t>(post.index())];
+  }
+
+  void AddRow(int row, int first, int last, const glm::vec3& start, const glm::vec3& step, Lane4& greatest) const {
+    greatest = MostOfRow(
+        static_cast<size_t>(row * kPosts + first), last - first + 1, greatest, [&](size_t index, const Lane4& along) {
+          return SquareRoots(posts_.SquaredDistances(index, along, start, step)) + Load(&left_out_[index]);
+        });
+  }
+  static float ErrorOf(const Lane4& greatest) { return GreatestOf(greatest); }
+
+ private:
+  PointRaster posts_{kVerticesPerPage};
+  std::vector<float> left_out_ = std::vector<float>(kVerticesPerPage + kSpare);
+};
+
+// The ellipsoid under a quadnode as a paraboloid over columns and rows of FinestSurface, 0 in the middle.
+class Paraboloid {
+ public:
+  explicit Paraboloid(Quadcode node) {
+    const GeoBox box = node.Box();
+    const RowGeometry row = RowAt(0.5 * (box.south_deg + box.north_deg));
+    const double step = node.SizeDegrees() / (kCells * FinestSurface::kPerCell) * kRadiansPerDegree;
+    const double east_m = row.prime_vertical_m * row.cos_latitude * row.cos_latitude;
+    per_column_m_ = 0.5 * east_m * step * step;
+    per_row_m_ = 0.5 * row.meridian_m * step * step;
+  }
+  double At(int column, int row) const {
+    const double x = column - kCells, y = row - kCells;
+    return -per_column_m_ * x * x - per_row_m_ * y * y;
+  }
+
+ private:
+  double per_column_m_ = 0, per_row_m_ = 0;
+};
+
+// Heights of the finest surface over those of the triangles, and the reverse, both on the paraboloid.
+class Relief {
+ public:
+  using Value = float;
+  static constexpr int kPerCell = FinestSurface::kPerCell;
+  static constexpr bool kTips = true;
+
+  Relief(std::span<const float> heights_m, const FinestSurface& finest, const Paraboloid& paraboloid)
+      : posts_m_(heights_m.begin(), heights_m.end()), low_m_(finest.low_m), high_m_(finest.high_m) {
+    low_m_.resize(low_m_.size() + kSpare);
+    high_m_.resize(high_m_.size() + kSpare);
+    for (int row = 0; row < kSide; ++row) {
+      for (int column = 0; column < kSide; ++column) {
+        const auto round_m = static_cast<float>(paraboloid.At(column, row));
+        const auto index = static_cast<size_t>(row * kSide + column);
+        low_m_[index] += round_m;
+        high_m_[index] += round_m;
+        if (row % kPerCell == 0 && column % kPerCell == 0)
+          posts_m_[static_cast<size_t>(Post{column / kPerCell, row / kPerCell}.index())] += round_m;
+      }
+    }
+  }
+
+  float at(Post post) const { return posts_m_[static_cast<size_t>(post.index())]; }
+
+  void AddRow(int row, int first, int last, float start, float step, Lane4& greatest) const {
+    greatest = MostOfRow(static_cast<size_t>(row * kSide + first), last - first + 1, greatest,
+                         [&](size_t index, const Lane4& along) {
+                           const Lane4 drawn = start + along * step;
+                           const Lane4 over = Load(&high_m_[index]) - drawn;
+                           const Lane4 under = drawn - Load(&low_m_[index]);
+                           return over > under ? over : under;
+                         });
+  }
+  static float ErrorOf(const Lane4& greatest) { return GreatestOf(greatest); }
+
+ private:
+  static constexpr int kSide = FinestSurface::kSide;
+  std::vector<float> posts_m_, low_m_, high_m_;
+};
+
+// The value within a triangle, linear in column and row.
+template <typename Value>
+struct Plane {
+  Value at_origin;  // of column `origin_column`, row `origin_row`
+  Value per_column;
+  Value per_row;
+  int origin_column = 0, origin_row = 0;
+
+  Value At(int column, int row) const {
+    return at_origin + static_cast<float>(column - origin_column) * per_column +
+           static_cast<float>(row - origin_row) * per_row;
+  }
+};
+
+// Columns and rows of the surface's points, where a post's are.
+template <typename Surface>
+Post PointAt(Post post) {
+  return {post.column * Surface::kPerCell, post.row * Surface::kPerCell};
+}
+
+// hypotenuse diagonal, right angle at the apex: the legs lie along its row and its column.
+template <typename Surface>
+float DiagonalError(const Surface& surface, const Split& split, Post apex) {
+  const Post in_row = split.end_a.row == apex.row ? split.end_a : split.end_b;
+  const Post in_column = split.end_a.row == apex.row ? split.end_b : split.end_a;
+  const Post origin = PointAt<Surface>(apex);
+  const int columns = PointAt<Surface>(in_row).column - origin.column;
+  const int rows = PointAt<Surface>(in_column).row - origin.row;
+  const typename Surface::Value corner = surface.at(apex);
+  const Plane<typename Surface::Value> plane{corner, (surface.at(in_row) - corner) / static_cast<float>(columns),
+                                             (surface.at(in_column) - corner) / static_cast<float>(rows), origin.column,
+                                             origin.row};
+  const int side = std::abs(rows);
+  Lane4 greatest{0, 0, 0, 0};
+  for (int away = 0; away < side + (Surface::kTips ? 1 : 0); ++away) {  // rows from the apex
+    const int row = origin.row + (rows > 0 ? away : -away);
+    const int width = side - away;
+    const int first = columns > 0 ? origin.column : origin.column - width;
+    surface.AddRow(row, first, first + width, plane.At(first, row), plane.per_column, greatest);
+  }
+  return Surface::ErrorOf(greatest);
+}
+
+// hypotenuse along a row or a column, `post` in its middle.
+template <typename Surface>
+float StraightError(const Surface& surface, const Split& split, Post post, Post apex) {
+  using Value = typename Surface::Value;
+  const Value a = surface.at(split.end_a);
+  const Value b = surface.at(split.end_b);
+  const Value middle = 0.5F * (a + b);
+  const bool along_row = split.end_a.row == split.end_b.row;
+  const Post origin = PointAt<Surface>(post);
+  const Post end = PointAt<Surface>(split.end_a);
+  const Post tip = PointAt<Surface>(apex);
+  const int span = along_row ? origin.column - end.column : origin.row - end.row;
+  const int side = along_row ? tip.row - origin.row : tip.column - origin.column;  // + or - span
+  const Value along = (b - a) / static_cast<float>(2 * span);
+  const Value across = (surface.at(apex) - middle) / static_cast<float>(side);
+  const Plane<Value> plane{middle, along_row ? along : across, along_row ? across : along, origin.column, origin.row};
+  Lane4 greatest{0, 0, 0, 0};
+  const int rows = span - (Surface::kTips ? 0 : 1);
+  for (int away = along_row ? 0 : -rows; away <= rows; ++away) {
+    const int row = along_row && side < 0 ? origin.row - away : origin.row + away;
+    const int width = span - std::abs(away);
+    const int first = along_row || side < 0 ? origin.column - width : origin.column;
+    const int last = along_row || side > 0 ? origin.column + width : origin.column;
+    surface.AddRow(row, first, last, plane.At(first, row), plane.per_column, greatest);
+  }
+  return Surface::ErrorOf(greatest);
+}
+
+// The two finest levels of a surface of its posts hold so few of them that they are tried one by one.
+float SmallDiagonalError(const OwnSurface& surface, const Split& split, Post apex) {
+  const auto between = [&](Post a, Post b) {
+    return surface.ErrorBetween({(a.column + b.column) / 2, (a.row + b.row) / 2}, a, b);
+  };
+  return std::max(between(apex, split.end_a), between(apex, split.end_b));
+}
+
+template <typename Surface>
+float OwnError(const Surface& surface, Post post, const Split& split, int level) {
+  constexpr bool kOfPosts = Surface::kPerCell == 1;
+  float greatest = 0;
+  if constexpr (kOfPosts) {
+    greatest = surface.ErrorBetween(post, split.end_a, split.end_b);
+    if (level == kBisectionLevels - 1) return greatest;
+  }
+  for (const Post apex : {split.apex_a, split.apex_b}) {
+    if (!apex.inside()) continue;
+    if constexpr (kOfPosts) {
+      if (level == kBisectionLevels - 2) {
+        greatest = std::max(greatest, SmallDiagonalError(surface, split, apex));
+        continue;
+      }
+    }
+    greatest = std::max(
+        greatest, level % 2 == 0 ? DiagonalError(surface, split, apex) : StraightError(surface, split, post, apex));
+  }
+  return greatest;
+}
+
+// Between the highest and the lowest of the corners of the triangles that a post splits.
+double RangeOf(std::span<const float> heights_m, const Split& split) {
+  float low = heights_m[static_cast<size_t>(split.end_a.index())], high = low;
+  for (const Post corner : {split.end_b, split.apex_a, split.apex_b}) {
+    if (!corner.inside()) continue;
+    low = std::min(low, heights_m[static_cast<size_t>(corner.index())]);
+    high = std::max(high, heights_m[static_cast<size_t>(corner.index())]);
+  }
+  return static_cast<double>(high - low);
+}
+
+// Of the posts that split something; the corners get the greatest.
+template <typename Of>
+std::vector<float> DeltasBy(const Of& of) {
+  std::vector<float> deltas_m(kVerticesPerPage);
+  for (int level = 0; level < kBisectionLevels; ++level)
+    ForEachPost(level, [&](Post post) { deltas_m[static_cast<size_t>(post.index())] = of(post, level); });
+  const float greatest = *std::max_element(deltas_m.begin(), deltas_m.end());
+  for (const Post corner : kCorners) deltas_m[static_cast<size_t>(corner.index())] = greatest;
+  return deltas_m;
+}
+
+// What the ellipsoid does to triangles that the paraboloid does not say, along the vertical and across it, at most, for
+// the posts of each row: meridians are all alike.
+class Roundness {
+ public:
+  static constexpr int kPerCell = FinestSurface::kPerCell;
+  struct Rest {
+    double up_m = 0, aside_m = 0;
+  };
+
+  Roundness(Quadcode node, const Paraboloid& paraboloid) : grid_(node, kPerCell), paraboloid_(paraboloid) {
+    for (int level = 0; level < kBisectionLevels; ++level) {
+      const int most_column = 3 * HalfSpan(level);  // as many posts of a row as there are ways for hypotenuses to run
+      ForEachPost(level, [&](Post post) {
+        if (post.column > most_column) return;
+        const Split split = SplitAt(post);
+        for (const Post apex : {split.apex_a, split.apex_b}) {
+          if (apex.inside()) Widen(apex, split, rests_[static_cast<size_t>(level)][static_cast<size_t>(post.row)]);
+        }
+      });
+    }
+  }
+  const Rest& at(Post post, int level) const {
+    return rests_[static_cast<size_t>(level)][static_cast<size_t>(post.row)];
+  }
+
+ private:
+  static constexpr int kSamples = 4;  // along a leg: all that is looked at is nearly quadratic
+
+  struct Place {
+    glm::dvec3 ecef{};
+    double paraboloid_m = 0;
+  };
+  Place At(int column, int row) const {
+    return {grid_.At(static_cast<size_t>(column), static_cast<size_t>(row), 0), paraboloid_.At(column, row)};
+  }
+
+  void Widen(Post apex, const Split& split, Rest& rest) const {
+    const Post a = PointAt<Roundness>(apex), b = PointAt<Roundness>(split.end_a), c = PointAt<Roundness>(split.end_b);
+    const Place at_a = At(a.column, a.row), at_b = At(b.column, b.row), at_c = At(c.column, c.row);
+    const auto [west, east] = std::minmax({a.column, b.column, c.column});
+    const auto [south, north] = std::minmax({a.row, b.row, c.row});
+    const int step = std::max(1, std::min(east - west, north - south) / kSamples);
+    const double area = (b.column - a.column) * (c.row - a.row) - (c.column - a.column) * (b.row - a.row);
+    for (int row = south; row <= north; row += step) {
+      for (int column = west; column <= east; column += step) {
+        const double u = ((column - a.column) * (c.row - a.row) - (c.column - a.column) * (row - a.row)) / area;
+        const double v = ((b.column - a.column) * (row - a.row) - (column - a.column) * (b.row - a.row)) / area;
+        if (u < 0 || v < 0 || u + v > 1) continue;
+        const Place here = At(column, row);
+        const double w = 1 - u - v;
+        const glm::dvec3 off = here.ecef - (w * at_a.ecef + u * at_b.ecef + v * at_c.ecef);
+        const double known_m =
+            here.paraboloid_m - (w * at_a.paraboloid_m + u * at_b.paraboloid_m + v * at_c.paraboloid_m);
+        const RowGeometry& parallel = grid_.rows[static_cast<size_t>(row)];
+        const ColumnGeometry& meridian = grid_.columns[static_cast<size_t>(column)];
+        const glm::dvec3 up{parallel.cos_latitude * meridian.cos_longitude,
+                            parallel.cos_latitude * meridian.sin_longitude, parallel.sin_latitude};
+        const double up_m = glm::dot(off, up);
+        rest.up_m = std::max(rest.up_m, std::abs(up_m - known_m));
+        rest.aside_m = std::max(rest.aside_m, glm::length(off - up_m * up));
+      }
+    }
+  }
+
+  PostGrid grid_;
+  const Paraboloid& paraboloid_;
+  std::array<std::array<Rest, kPosts>, kBisectionLevels> rests_{};
+};
+
+// 2^(-step / kDeltaStepsPerOctave), rounded up: what a stored step stands for, of the greatest.
+using StepShares = std::array<float, 256>;
+StepShares MakeStepShares() {
+  constexpr double kRoundedUp = 1.0000002;
+  StepShares shares{};
+  for (size_t step = 0; step < shares.size(); ++step) {
+    shares[step] = static_cast<float>(std::exp2(-static_cast<double>(step) / kDeltaStepsPerOctave) * kRoundedUp);
+  }
+  return shares;
+}
+const StepShares& ShareOfSteps() {
+  static const StepShares kShares = MakeStepShares();
+  return kShares;
+}
+
+}  // namespace
+
+std::vector<float> DeltaValuesOf(Quadcode node, std::span<const float> heights_m, const FinestSurface& finest) {
+  BELVEDERE_CHECK(heights_m.size() == kVerticesPerPage);
+  constexpr double kSampled = 1.02;    // what is looked at in places may be a little more between them
+  constexpr double kAtHeight = 1.002;  // on high ground all is larger, by the height over the Earth's radius
+  const Paraboloid paraboloid(node);
+  const Roundness roundness(node, paraboloid);
+  const Relief relief(heights_m, finest, paraboloid);
+  const double post_radians = node.SizeDegrees() / kCells * kRadiansPerDegree;
+  return DeltasBy([&](Post post, int level) {
+    const Split split = SplitAt(post);
+    const Roundness::Rest& rest = roundness.at(post, level);
+    // No two verticals of a triangle are further apart than those at the ends of a diagonal hypotenuse of the level.
+    const double turn = 2 * HalfSpan(level) * std::numbers::sqrt2 * post_radians;
+    const double up_m = kAtHeight * (static_cast<double>(OwnError(relief, post, split, level)) + kSampled * rest.up_m);
+    const double aside_m = kAtHeight * kSampled * rest.aside_m + turn * RangeOf(heights_m, split);
+    return static_cast<float>(std::sqrt(up_m * up_m + aside_m * aside_m));
+  });
+}
+
+std::vector<float> DeltaValuesOf(std::span<const TerrainVertex> vertices, const ErrorBlocks& errors_m) {
+  BELVEDERE_CHECK(vertices.size() == kVerticesPerPage);
+  static_assert(kBisections == kBisectionLevels);
+  const OwnSurface surface(vertices, errors_m);
+  return DeltasBy([&](Post post, int level) { return OwnError(surface, post, SplitAt(post), level); });
+}
+
+std::array<float, kBisections> SpreadsOf(std::span<const TerrainVertex> vertices) {
+  constexpr float kRoundedUp = 1.000001F;
+  std::array<float, kBisections> spread_m{};
+  for (int level = 0; level < kBisectionLevels; ++level) {
+    float squared = 0;
+    ForEachPost(level, [&](Post post) {
+      const Split split = SplitAt(post);
+      const glm::vec3 place = PlaceOf(vertices[static_cast<size_t>(post.index())]);
+      for (const Post corner : {split.end_a, split.end_b, split.apex_a, split.apex_b}) {
+        if (!corner.inside()) continue;
+        squared = std::max(squared, SquaredDistance(PlaceOf(vertices[static_cast<size_t>(corner.index())]), place));
+      }
+    });
+    spread_m[static_cast<size_t>(level)] = std::sqrt(squared) * kRoundedUp;
+  }
+  return spread_m;
+}
+
+StoredDeltas StoreDeltas(std::span<const float> deltas_m) {
+  BELVEDERE_CHECK(deltas_m.size() == kVerticesPerPage);
+  const StepShares& shares = ShareOfSteps();
+  constexpr int kLast = static_cast<int>(StepShares{}.size()) - 1;
+  StoredDeltas stored{*std::max_element(deltas_m.begin(), deltas_m.end()), {}};
+  stored.steps.reserve(deltas_m.size());
+  for (const float delta_m : deltas_m) {
+    const auto promises = [&](int step) { return stored.greatest_m * shares[static_cast<size_t>(step)] >= delta_m; };
+    const float octaves = delta_m > 0 ? std::log2(stored.greatest_m / delta_m) : kLast;
+    int step = static_cast<int>(std::clamp(octaves * kDeltaStepsPerOctave, 0.0F, static_cast<float>(kLast)));
+    while (step > 0 && !promises(step)) --step;
+    while (step < kLast && promises(step + 1)) ++step;
+    stored.steps.push_back(static_cast<uint8_t>(step));
+  }
+  return stored;
+}
+
+std::vector<float> RestoreDeltas(const StoredDeltas& stored) {
+  BELVEDERE_CHECK(stored.steps.size() == kVerticesPerPage);
+  StepShares values_m = ShareOfSteps();
+  for (float& value : values_m) value *= stored.greatest_m;
+  std::vector<float> deltas_m;
+  deltas_m.reserve(stored.steps.size());
+  for (const uint8_t step : stored.steps) deltas_m.push_back(values_m[step]);
+  return deltas_m;
+}
+
+}  // namespace belvedere
