@@ -7,11 +7,9 @@
 // same on both sides of a border. Below the end of the data the slopes of the finest posts are interpolated: shading
 // stays smooth where geometry is a bilinear surface.
 //
-// Delta values. The delta value of a post that splits triangles at level l (bisection.h) is the largest distance of any
-// post within those triangles from the plane of the triangle, at the same column and row; raised to that of the posts
-// that depend on it, and by what the page itself leaves out there. Distances are cartesian, so they know of the
-// Earth's curvature. Every deviation that a triangle can show at a post is thus bounded by the delta value of the post
-// that would split it.
+// Delta values (delta_values.h) are those of the dataset, which the builder made of the finest posts there are, where
+// the page is the quadnode's own, its heights are as they were and no border is laid elsewhere. Otherwise they are made
+// here, of the page's own posts and of what its blocks leave out around each.
 //
 // Vertical exaggeration multiplies heights before anything is made of them.
 //

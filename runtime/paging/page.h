@@ -54,7 +54,7 @@ inline constexpr int kBlockCells = kCells / kErrorBlocks;
 using ErrorBlocks = std::array<float, static_cast<size_t>(kErrorBlocks) * kErrorBlocks>;  // row by row
 
 // Delta values in the logarithm: post i has greatest_m / 2^(steps[i] / kDeltaStepsPerOctave), or a little less.
-inline constexpr int kDeltaStepsPerOctave = 8;
+inline constexpr int kDeltaStepsPerOctave = 12;
 struct StoredDeltas {
   float greatest_m = 0;
   std::vector<uint8_t> steps;  // kVerticesPerPage, or none

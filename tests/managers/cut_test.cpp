@@ -117,6 +117,51 @@ TEST_F(CutTest, KeepsTheBoundInViewWhenAllPagesAreThere) {
   }
 }
 
+// The mean side of a texel on the screen, pixels, at a place on the ellipsoid; 0 where it is not in the picture.
+double TexelSide_px(const ViewParameters& view, const ViewMatrices& matrices, double latitude, double longitude,
+                    int level) {
+  const double texel_deg = std::ldexp(kTreeDegrees, -level) / kImageInner;
+  const auto on_screen = [&](double north, double east) {
+    const glm::dvec3 ecef = ToEcef({latitude + north * texel_deg, longitude + east * texel_deg, 0.0});
+    const glm::dvec3 camera = (ecef - matrices.eye_ecef) * view.ecef_from_camera;
+    return camera.z < 0 ? matrices.pixels_per_radian * glm::dvec2(camera) / -camera.z : glm::dvec2(1e9);
+  };
+  const glm::dvec2 here = on_screen(0, 0);
+  if (std::abs(here.x) > 0.5 * view.width_px || std::abs(here.y) > 0.5 * view.height_px) return 0;
+  const glm::dvec2 north = on_screen(0.01, 0) - here, east = on_screen(0, 0.01) - here;
+  return std::sqrt(std::abs(north.x * east.y - north.y * east.x)) / 0.01;
+}
+
+TEST_F(CutTest, TexelsKeepTheirBoundAtAnySlant) {
+  view_.error_px = 1e9;  // images alone ask for quadnodes
+  int looked_at = 0;
+  for (const double height_m : {20e3, 200e3, 2000e3}) {
+    for (const double pitch_deg : {-90.0, -50.0, -25.0, -8.0}) {
+      LookFrom(37, -118, height_m, pitch_deg);
+      const ViewMatrices matrices = MatricesOf(view_, 0, height_m);
+      const Cut cut = SelectCut(view_, matrices, layers_, kTerrain, {}, pages_, before_);
+      double greatest_px = 0;
+      for (const CutNode& drawn : cut.nodes) {
+        if (!drawn.visible || drawn.images[0].slot < 0) continue;
+        const int level = drawn.images[0].source.level();
+        if (level == 5) continue;  // there are no finer ones
+        const GeoBox box = drawn.node.Box();
+        for (int i = 0; i <= 100; ++i) {
+          const double latitude = box.south_deg + i / 10 * 0.0999 * drawn.node.SizeDegrees();
+          const double longitude = box.west_deg + i % 10 * 0.1111 * drawn.node.SizeDegrees();
+          if (matrices.horizon.Hides({ToEcef({latitude, longitude, 0.0}), 1.0})) continue;
+          greatest_px = std::max(greatest_px, TexelSide_px(view_, matrices, latitude, longitude, level));
+        }
+      }
+      EXPECT_LE(greatest_px, view_.texel_px * 1.01) << height_m << " m up, pitch " << pitch_deg;
+      if (greatest_px == 0) continue;  // all of the finest level
+      EXPECT_GT(greatest_px, view_.texel_px * 0.2) << height_m << " m up, pitch " << pitch_deg;
+      ++looked_at;
+    }
+  }
+  EXPECT_GE(looked_at, 8);
+}
+
 TEST_F(CutTest, ATighterBoundRefinesMore) {
   view_.texel_px = 1e9;
   view_.error_px = 4;
