@@ -39,8 +39,7 @@ std::vector<float> DeltaValuesOf(std::span<const TerrainVertex> vertices, const 
 // TerrainPage::spread_m
 std::array<float, kBisections> SpreadsOf(std::span<const TerrainVertex> vertices);
 
-// ---- as a page of the dataset has them: logarithms, which promise no less than the values, and a sixteenth more at most
-// ------
+// As a page of the dataset has them: logarithms, which promise no less than the values, and a sixteenth more at most.
 StoredDeltas StoreDeltas(std::span<const float> deltas_m);
 std::vector<float> RestoreDeltas(const StoredDeltas& stored);
 
