@@ -132,8 +132,7 @@ struct TerrainPage final : Page {
   }
 };
 
-// ---- models: what the object server makes of a model file
-// ------------------------------------------------------------
+// ---- models: what the object server makes of a model file -----------------------------------------------------------
 struct ModelVertex {
   float x, y, z;  // metres in the body frame: x forward, y right, z down
   float normal_x, normal_y, normal_z;
