@@ -61,13 +61,13 @@ struct PostSelection::LocalView {
     return (kCurvatureSpread * from_origin_m - std::min(0.0, double{page.min_height_m})) / kCurvature_m;
   }
 
-  // Of the triangles that the post splits, by their corners: the least depth, and the greatest g as a share of the
-  // quadnode's.
+  // Of the triangles that the post splits, by their corners: the least depth, also of what lies delta_m over or under
+  // them, and the greatest g as a share of the quadnode's. A view without a greatest g, an orthographic one, has none.
   struct Corners {
     float least_depth_m = kLeastDepth_m;
     float share_of_greatest = 1;
   };
-  Corners LookAtCorners(Post post, int level) const {
+  Corners LookAtCorners(Post post, int level, float delta_m) const {
     constexpr auto kPerMetre = static_cast<float>(1.0 / kCurvature_m);
     const glm::vec3 up = glm::vec3(0, 0, 1) + PlaceOf(post) * kPerMetre;
     const float along = glm::dot(up, forward);
@@ -84,7 +84,7 @@ struct PostSelection::LocalView {
     }
     stretch += widest * (std::abs(along) * moved_m / least_depth_m +
                          page.spread_m[static_cast<size_t>(level)] * kPerMetre + tilt);
-    return {least_depth_m, std::min(1.0F, stretch / greatest_stretch)};
+    return {least_depth_m - delta_m * std::abs(along), std::min(1.0F, stretch / greatest_stretch)};
   }
 
   glm::vec3 PlaceOf(Post post) const {
@@ -160,17 +160,17 @@ void PostSelection::Test(Post post, int level, const LocalView& view) {
   const float delta_m = view.page.deltas[index];
   // Whoever jumps to the other side of the world finds it round, also in the list that was made before the jump.
   if (delta_m > kAlwaysDrawn_m) return Draw(post, view);
-  // A quadnode that must serve although its own posts are too coarse draws those that matter beside what it leaves.
-  float error = delta_m > view.left_over_m ? delta_m * view.scale : 0.0F;
+  // A quadnode that must serve although its own posts are too coarse draws what matters beside what it leaves anyhow.
+  float error = std::max(0.0F, delta_m - view.left_over_m) * view.scale;
   // Most posts are done with before their place is looked up in memory.
   float least_depth_m = view.perspective ? view.nearest_depth_m : 1.0F;
   const float stay = state == kDrawnBefore ? stay_ : 1.0F;
   if (error * stay > least_depth_m && view.perspective) least_depth_m = view.LeastDepth(post.index(), level);
   least_depth_m = std::max(least_depth_m, kLeastDepth_m);
   if (error * stay > least_depth_m && view.greatest_stretch > 0) {
-    const LocalView::Corners corners = view.LookAtCorners(post, level);
+    const LocalView::Corners corners = view.LookAtCorners(post, level, delta_m);
     error *= corners.share_of_greatest;
-    if (view.perspective) least_depth_m = std::max(least_depth_m, corners.least_depth_m);
+    least_depth_m = std::max(least_depth_m, corners.least_depth_m);
   }
   if (error * stay > least_depth_m && view.sides.any() && view.IsBeside(post.index(), level)) {
     error *= static_cast<float>(kShareBesidePicture);

@@ -14,6 +14,7 @@
 // eye. An eye that has moved by d sees the point at w', where w' - w = (w' (d.f) - d) / z; so with W the most that |w'|
 // is in the picture, and z the least depth,
 //     g <= greatest |u - (u.f) w| of the corners + |u.f| W |d| / z + W |change of u|.
+// What is displaced by e along u moves by e g over its depth where it then is: the least depth is less by e |u.f|.
 // Verticals are taken to be those of a sphere through the frame's origin, which change by the triangles' spread over
 // its radius; how far those of the ellipsoid are from them is added. All this is for any eye within kKeepMargin of the
 // nearest depth, so that triangles can be kept (kept_triangles.h). It is a bound for what is seen; what is not has no g

@@ -1,10 +1,14 @@
 #include "preproc/finest_surface.h"
 
+#include "runtime/base/status.h"
 #include "runtime/earth/post_grid.h"
 #include "runtime/paging/delta_values.h"
+#include "runtime/paging/stored_deltas.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace belvedere {
@@ -19,7 +23,7 @@ float OverBase(int32_t height_mm, int32_t base_mm) {
 
 // A child's cells say how far the finest surface is from their triangles, but for the Earth's curvature, which raises
 // it by the sagitta at most. A point takes it from the cells that meet there.
-void WidenByCells(const BoundedPage& child, size_t corner, int32_t sagitta, std::vector<Deviation>& around) {
+void WidenByCells(const BoundedPage& child, size_t corner, int64_t sagitta, std::vector<Deviation>& around) {
   for (size_t row = 0; row < kCells; ++row) {
     for (size_t column = 0; column < kCells; ++column) {
       const Deviation& cell = child.deviations[row * kCells + column];
@@ -49,12 +53,12 @@ FinestSurface FinestUnder(Quadcode node, const std::array<BoundedPage, 4>& child
     const bool is_finest = child.page->deltas.steps.empty();
     if (is_finest) continue;
     const double sagitta_m = CellSagitta(node.Child(static_cast<int>(which)));  // of what is finer than its cells
-    WidenByCells(child, corner, static_cast<int32_t>(std::ceil(sagitta_m / kMetresPerDeviation)), around);
+    WidenByCells(child, corner, static_cast<int64_t>(std::ceil(sagitta_m / kMetresPerDeviation)), around);
   }
   finest.high_m = finest.low_m;
   for (size_t point = 0; point < around.size(); ++point) {
-    finest.low_m[point] += static_cast<float>(around[point].low * kMetresPerDeviation);
-    finest.high_m[point] += static_cast<float>(around[point].high * kMetresPerDeviation);
+    finest.low_m[point] += static_cast<float>(static_cast<double>(around[point].low) * kMetresPerDeviation);
+    finest.high_m[point] += static_cast<float>(static_cast<double>(around[point].high) * kMetresPerDeviation);
   }
   return finest;
 }
@@ -62,6 +66,7 @@ FinestSurface FinestUnder(Quadcode node, const std::array<BoundedPage, 4>& child
 }  // namespace
 
 StoredDeltas DeltasFromChildren(Quadcode node, const ElevationPage& page, const std::array<BoundedPage, 4>& children) {
+  BELVEDERE_CHECK(node.level() < kMaxLevel);
   const int32_t base_mm = page.at(kCells / 2, kCells / 2);  // near which floats are finest
   std::vector<float> heights_m;
   heights_m.reserve(kVerticesPerPage);

@@ -11,6 +11,7 @@
 namespace belvedere {
 
 // Delta values of the page, which is done but for them, from its children, which are done.
+// REQUIRES: node.level() < kMaxLevel
 StoredDeltas DeltasFromChildren(Quadcode node, const ElevationPage& page, const std::array<BoundedPage, 4>& children);
 
 }  // namespace belvedere

@@ -11,14 +11,14 @@ namespace belvedere {
 namespace {
 
 // Twice the height of the parent's triangles at half-post (u, v): a post, the middle of an edge or of a diagonal.
-int32_t TwiceHeight(const ElevationPage& page, int u, int v) {
+int64_t TwiceHeight(const ElevationPage& page, int u, int v) {
   const int i = u / 2;
   const int j = v / 2;
-  if (u % 2 == 0 && v % 2 == 0) return 2 * page.at(i, j);
-  if (v % 2 == 0) return page.at(i, j) + page.at(i + 1, j);
-  if (u % 2 == 0) return page.at(i, j) + page.at(i, j + 1);
-  if ((i + j) % 2 == 0) return page.at(i, j) + page.at(i + 1, j + 1);
-  return page.at(i + 1, j) + page.at(i, j + 1);
+  if (u % 2 == 0 && v % 2 == 0) return 2 * int64_t{page.at(i, j)};
+  if (v % 2 == 0) return int64_t{page.at(i, j)} + page.at(i + 1, j);
+  if (u % 2 == 0) return int64_t{page.at(i, j)} + page.at(i, j + 1);
+  if ((i + j) % 2 == 0) return int64_t{page.at(i, j)} + page.at(i + 1, j + 1);
+  return int64_t{page.at(i + 1, j)} + page.at(i, j + 1);
 }
 
 // The nearest floats that are not inside of the value.
@@ -32,14 +32,14 @@ float RoundedDown(double value) {
 }
 
 // Heights of the child over the parent's triangles at its posts, twice, millimetres.
-std::vector<int32_t> TwiceOverParent(const ElevationPage& parent, const ElevationPage& child, int which) {
+std::vector<int64_t> TwiceOverParent(const ElevationPage& parent, const ElevationPage& child, int which) {
   const int west = which % 2 * kCells;
   const int south = which / 2 * kCells;
-  std::vector<int32_t> over;
+  std::vector<int64_t> over;
   over.reserve(static_cast<size_t>(kPosts) * kPosts);
   for (int row = 0; row < kPosts; ++row) {
     for (int column = 0; column < kPosts; ++column) {
-      over.push_back(2 * child.at(column, row) - TwiceHeight(parent, west + column, south + row));
+      over.push_back(2 * int64_t{child.at(column, row)} - TwiceHeight(parent, west + column, south + row));
     }
   }
   return over;
@@ -47,7 +47,7 @@ std::vector<int32_t> TwiceOverParent(const ElevationPage& parent, const Elevatio
 
 // Widens the cells of the parent by what lies under them in the child `which`, cell by cell of the child.
 void AddChild(const ElevationPage& parent, const BoundedPage& child, int which, CellDeviations& parents) {
-  const std::vector<int32_t> over = TwiceOverParent(parent, *child.page, which);
+  const std::vector<int64_t> over = TwiceOverParent(parent, *child.page, which);
   const int west = which % 2 * kCells;
   const int south = which / 2 * kCells;
   for (int row = 0; row < kCells; ++row) {
@@ -79,7 +79,7 @@ CellDeviations BoundPage(ElevationPage& page, const std::array<BoundedPage, 4>* 
   page.block_errors_m.fill(0);
   CellDeviations deviations(static_cast<size_t>(kCells) * kCells);
   if (children == nullptr) return deviations;
-  deviations.assign(deviations.size(), {std::numeric_limits<int32_t>::max(), std::numeric_limits<int32_t>::min()});
+  deviations.assign(deviations.size(), {std::numeric_limits<int64_t>::max(), std::numeric_limits<int64_t>::min()});
   for (size_t which = 0; which < children->size(); ++which) {
     const BoundedPage& child = (*children)[which];
     page.min_m = std::min(page.min_m, child.page->min_m);
@@ -89,7 +89,8 @@ CellDeviations BoundPage(ElevationPage& page, const std::array<BoundedPage, 4>* 
   for (size_t cell = 0; cell < deviations.size(); ++cell) {
     const size_t block = cell / kCells / kBlockCells * kErrorBlocks + cell % kCells / kBlockCells;
     float& error = page.block_errors_m[block];
-    error = std::max(error, RoundedUp(std::max(deviations[cell].high, -deviations[cell].low) * kMetresPerDeviation));
+    error = std::max(error, RoundedUp(static_cast<double>(std::max(deviations[cell].high, -deviations[cell].low)) *
+                                      kMetresPerDeviation));
     page.error_m = std::max(page.error_m, error);
   }
   return deviations;

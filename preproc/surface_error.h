@@ -22,7 +22,7 @@ namespace belvedere {
 // between those of the one above. Both sides are kept apart until the page is stored: what one level adds and the next
 // takes away must not count twice.
 struct Deviation {
-  int32_t low = 0, high = 0;
+  int64_t low = 0, high = 0;
 };
 inline constexpr double kMetresPerDeviation = 0.0005;
 using CellDeviations = std::vector<Deviation>;  // kCells^2

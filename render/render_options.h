@@ -17,7 +17,7 @@ struct RenderOptions {
   int model_slots = 64;
   int samples = -1;  // of multisampling; -1: none on a software renderer, 4 on a GPU
   std::string font_path = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
-  size_t recorded_samples = size_t{1} << 14;  // frames that the recorder keeps
+  size_t recorded_samples = size_t{1} << 14;  // of the recorder, one for each view of a frame
 };
 
 }  // namespace belvedere

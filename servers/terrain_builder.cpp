@@ -5,6 +5,7 @@
 #include "runtime/earth/frame.h"
 #include "runtime/earth/post_grid.h"
 #include "runtime/paging/delta_values.h"
+#include "runtime/paging/stored_deltas.h"
 #include "servers/height_field.h"
 
 #include <glm/common.hpp>

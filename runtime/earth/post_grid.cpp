@@ -1,5 +1,6 @@
 #include "runtime/earth/post_grid.h"
 
+#include "runtime/base/status.h"
 #include "runtime/earth/ellipsoid.h"
 #include "runtime/earth/units.h"
 
@@ -25,6 +26,7 @@ glm::dvec3 EcefAt(const RowGeometry& row, const ColumnGeometry& column, double h
 }
 
 PostGrid::PostGrid(Quadcode node, int per_cell) {
+  BELVEDERE_CHECK(per_cell > 0 && static_cast<uint32_t>(per_cell) <= node.PostSpacing());
   const uint32_t spacing = node.PostSpacing() / static_cast<uint32_t>(per_cell);
   const int points = kCells * per_cell + 1;
   GridPoint point = node.SouthWest();

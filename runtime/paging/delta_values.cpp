@@ -2,6 +2,7 @@
 
 #include "runtime/base/status.h"
 #include "runtime/earth/bisection.h"
+#include "runtime/earth/ellipsoid.h"
 #include "runtime/earth/post_grid.h"
 #include "runtime/earth/units.h"
 
@@ -9,8 +10,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <numbers>
+#include <type_traits>
 
 namespace belvedere {
 namespace {
@@ -275,8 +278,8 @@ float SmallDiagonalError(const OwnSurface& surface, const Split& split, Post ape
 }
 
 template <typename Surface>
-float OwnError(const Surface& surface, Post post, const Split& split, int level) {
-  constexpr bool kOfPosts = Surface::kPerCell == 1;
+float ErrorOfSplit(const Surface& surface, Post post, const Split& split, int level) {
+  constexpr bool kOfPosts = std::is_same_v<Surface, OwnSurface>;
   float greatest = 0;
   if constexpr (kOfPosts) {
     greatest = surface.ErrorBetween(post, split.end_a, split.end_b);
@@ -387,27 +390,14 @@ class Roundness {
   std::array<std::array<Rest, kPosts>, kBisectionLevels> rests_{};
 };
 
-// 2^(-step / kDeltaStepsPerOctave), rounded up: what a stored step stands for, of the greatest.
-using StepShares = std::array<float, 256>;
-StepShares MakeStepShares() {
-  constexpr double kRoundedUp = 1.0000002;
-  StepShares shares{};
-  for (size_t step = 0; step < shares.size(); ++step) {
-    shares[step] = static_cast<float>(std::exp2(-static_cast<double>(step) / kDeltaStepsPerOctave) * kRoundedUp);
-  }
-  return shares;
-}
-const StepShares& ShareOfSteps() {
-  static const StepShares kShares = MakeStepShares();
-  return kShares;
-}
-
 }  // namespace
 
 std::vector<float> DeltaValuesOf(Quadcode node, std::span<const float> heights_m, const FinestSurface& finest) {
+  constexpr size_t kPoints = static_cast<size_t>(FinestSurface::kSide) * FinestSurface::kSide;
   BELVEDERE_CHECK(heights_m.size() == kVerticesPerPage);
+  BELVEDERE_CHECK(finest.low_m.size() == kPoints && finest.high_m.size() == kPoints);
   constexpr double kSampled = 1.02;    // what is looked at in places may be a little more between them
-  constexpr double kAtHeight = 1.002;  // on high ground all is larger, by the height over the Earth's radius
+  constexpr double kAtHeight = 0.002;  // by which the Earth's shape counts for more, or less, 12 km over or under it
   const Paraboloid paraboloid(node);
   const Roundness roundness(node, paraboloid);
   const Relief relief(heights_m, finest, paraboloid);
@@ -417,8 +407,10 @@ std::vector<float> DeltaValuesOf(Quadcode node, std::span<const float> heights_m
     const Roundness::Rest& rest = roundness.at(post, level);
     // No two verticals of a triangle are further apart than those at the ends of a diagonal hypotenuse of the level.
     const double turn = 2 * HalfSpan(level) * std::numbers::sqrt2 * post_radians;
-    const double up_m = kAtHeight * (static_cast<double>(OwnError(relief, post, split, level)) + kSampled * rest.up_m);
-    const double aside_m = kAtHeight * kSampled * rest.aside_m + turn * RangeOf(heights_m, split);
+    const double bulge_m = turn * turn * kEquatorialRadius_m / 8.0;
+    const double up_m =
+        static_cast<double>(ErrorOfSplit(relief, post, split, level)) + kSampled * rest.up_m + kAtHeight * bulge_m;
+    const double aside_m = (1.0 + kAtHeight) * kSampled * rest.aside_m + turn * RangeOf(heights_m, split);
     return static_cast<float>(std::sqrt(up_m * up_m + aside_m * aside_m));
   });
 }
@@ -427,7 +419,7 @@ std::vector<float> DeltaValuesOf(std::span<const TerrainVertex> vertices, const 
   BELVEDERE_CHECK(vertices.size() == kVerticesPerPage);
   static_assert(kBisections == kBisectionLevels);
   const OwnSurface surface(vertices, errors_m);
-  return DeltasBy([&](Post post, int level) { return OwnError(surface, post, SplitAt(post), level); });
+  return DeltasBy([&](Post post, int level) { return ErrorOfSplit(surface, post, SplitAt(post), level); });
 }
 
 std::array<float, kBisections> SpreadsOf(std::span<const TerrainVertex> vertices) {
@@ -446,33 +438,6 @@ std::array<float, kBisections> SpreadsOf(std::span<const TerrainVertex> vertices
     spread_m[static_cast<size_t>(level)] = std::sqrt(squared) * kRoundedUp;
   }
   return spread_m;
-}
-
-StoredDeltas StoreDeltas(std::span<const float> deltas_m) {
-  BELVEDERE_CHECK(deltas_m.size() == kVerticesPerPage);
-  const StepShares& shares = ShareOfSteps();
-  constexpr int kLast = static_cast<int>(StepShares{}.size()) - 1;
-  StoredDeltas stored{*std::max_element(deltas_m.begin(), deltas_m.end()), {}};
-  stored.steps.reserve(deltas_m.size());
-  for (const float delta_m : deltas_m) {
-    const auto promises = [&](int step) { return stored.greatest_m * shares[static_cast<size_t>(step)] >= delta_m; };
-    const float octaves = delta_m > 0 ? std::log2(stored.greatest_m / delta_m) : kLast;
-    int step = static_cast<int>(std::clamp(octaves * kDeltaStepsPerOctave, 0.0F, static_cast<float>(kLast)));
-    while (step > 0 && !promises(step)) --step;
-    while (step < kLast && promises(step + 1)) ++step;
-    stored.steps.push_back(static_cast<uint8_t>(step));
-  }
-  return stored;
-}
-
-std::vector<float> RestoreDeltas(const StoredDeltas& stored) {
-  BELVEDERE_CHECK(stored.steps.size() == kVerticesPerPage);
-  StepShares values_m = ShareOfSteps();
-  for (float& value : values_m) value *= stored.greatest_m;
-  std::vector<float> deltas_m;
-  deltas_m.reserve(stored.steps.size());
-  for (const uint8_t step : stored.steps) deltas_m.push_back(values_m[step]);
-  return deltas_m;
 }
 
 }  // namespace belvedere

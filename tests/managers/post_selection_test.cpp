@@ -63,6 +63,27 @@ TEST(PostSelection, NoTriangleIsOverTheBoundAnywhere) {
   EXPECT_GT(whole, 500U);
 }
 
+// What the page leaves whatever is drawn is taken off every delta value before it counts.
+TEST(PostSelection, AQuadnodeThatServesAlthoughItIsTooCoarseDrawsWhatMattersBesideThat) {
+  Scene scene(3);
+  const auto draw = [&](float error_m, bool finest) {
+    std::vector<PostTriangle> triangles;
+    scene.page->error_m = error_m;
+    scene.node.finest = finest;
+    PostSelection().Run(scene.node, scene.sight, FrameOf(scene.page->node), kErrorPx, {}, 1.0F, triangles);
+    return triangles.size();
+  };
+  const float greatest = *std::max_element(scene.page->deltas.begin(), scene.page->deltas.end());
+  const size_t whole = draw(0.1F * greatest, true);
+  const size_t less = draw(0.1F * greatest, false);
+  EXPECT_EQ(whole, scene.triangles.size());
+  EXPECT_LT(less, whole);
+  EXPECT_GT(less, 2U);
+  for (float& delta : scene.page->deltas) delta = std::max(0.0F, delta - 0.1F * greatest);
+  EXPECT_EQ(draw(0, true), less);
+  EXPECT_EQ(draw(greatest, false), 2U);
+}
+
 // From wherever the eye looks, near and far, at whatever slant; and with far fewer triangles than for the greatest g
 // that there is anywhere.
 TEST(PostSelection, ShiftsAlongTheVerticalKeepTheBound) {

@@ -5,15 +5,20 @@
 #include "runtime/earth/bisection.h"
 #include "runtime/earth/ellipsoid.h"
 #include "runtime/paging/delta_values.h"
+#include "runtime/paging/stored_deltas.h"
 #include "tests/servers/terrain_test_pages.h"
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
+#include <memory>
+#include <utility>
+#include <vector>
 
 namespace belvedere {
 namespace {
@@ -53,7 +58,7 @@ class Pages {
   std::map<Quadcode, std::shared_ptr<const ElevationPage>> pages_;
 };
 
-// Post of `node`, whose columns and rows count from `root`'s corner in units of its own posts.
+// Where the node's post (column, row) is.
 glm::dvec3 PlaceOf(Quadcode node, const ElevationPage& page, int column, int row) {
   const GridPoint corner = node.SouthWest();
   const GridPoint point{corner.x + static_cast<uint32_t>(column) * node.PostSpacing(),
@@ -97,7 +102,7 @@ double GreatestDistance(const Pages& pages, Quadcode root, Post post) {
   return greatest;
 }
 
-// One post in a hundred, of every level.
+// One post in two hundred, of every level.
 std::vector<Post> PostsToTry() {
   std::vector<Post> posts;
   for (int level = 0; level < kBisectionLevels; ++level) {
@@ -110,8 +115,10 @@ std::vector<Post> PostsToTry() {
 }
 
 const std::vector<Quadcode>& NodesToTry() {
-  static const std::vector<Quadcode> kNodes{Quadcode::Root(20), Quadcode::Containing(46, 8, 8),
-                                            Quadcode::FromColumnRow(9, 0, 0)};
+  static const std::vector<Quadcode> kNodes{
+      Quadcode::Root(20),  // then one anywhere, a pole and 180 W, 180 E and a pole
+      Quadcode::Containing(46, 8, 8), Quadcode::FromColumnRow(9, 0, 0),
+      Quadcode::FromColumnRow(6, -1, (kTreeRows << 6) - 1), Quadcode::FromColumnRow(12, -1, 9000)};
   return kNodes;
 }
 

@@ -1,6 +1,7 @@
 #include "runtime/paging/page_codec.h"
 
 #include <gtest/gtest.h>
+#include <zstd.h>
 
 #include <cmath>
 #include <random>
@@ -118,8 +119,44 @@ TEST(PageCodec, HeaderBytesArePinned) {
   for (size_t i = 0; i < 4; ++i) EXPECT_EQ(bytes[16 + i], static_cast<uint8_t>(crc >> (8 * i)));
 }
 
+// As docs/dataset-format.md has it.
+TEST(PageCodec, BytesOfDeltaValuesArePinned) {
+  ElevationPage flat;
+  flat.heights_mm.assign(static_cast<size_t>(kElevationSide) * kElevationSide, 0);
+  flat.deltas = {1.0f, std::vector<uint8_t>(kVerticesPerPage, 100)};
+  flat.deltas.steps[0] = 1;                     // the south-west corner,
+  flat.deltas.steps[kVerticesPerPage - 1] = 4;  // the north-east one,
+  flat.deltas.steps[64 * kPosts + 64] = 30;     // the middle of the page, whose parents are the others,
+  flat.deltas.steps[64] = 70;                   // and the middles of two sides
+  flat.deltas.steps[64 * kPosts] = 20;
+  const auto bytes = EncodeElevation(flat);
+  EXPECT_EQ(bytes[6], 2);
+  constexpr size_t kBefore = 4 * (3 + 16 * 16) + 4 * 133 * 133;
+  constexpr size_t kRaw = kBefore + 4 + 129 * 129;
+  std::vector<uint8_t> raw(kRaw);
+  ASSERT_EQ(ZSTD_decompress(raw.data(), kRaw, &bytes[kPageHeaderBytes], bytes.size() - kPageHeaderBytes), kRaw);
+  const std::vector<uint8_t> start(raw.begin() + kBefore, raw.begin() + kBefore + 14);
+  const std::vector<uint8_t> expected{0,
+                                      0,
+                                      128,
+                                      63,  // 1.0f
+                                      1,
+                                      100,
+                                      100,
+                                      4,  // corners
+                                      static_cast<uint8_t>(30 - 100),
+                                      70 - 30,
+                                      static_cast<uint8_t>(20 - 30),
+                                      70,
+                                      70,                               // south, west, east, north
+                                      static_cast<uint8_t>(100 - 20)};  // the middle of the south-western quarter
+  EXPECT_EQ(start, expected);
+}
+
 TEST(PageCodec, EveryDamagedByteIsNoticed) {
-  const auto good = EncodeElevation(Hills(4));
+  ElevationPage page = Hills(4);
+  page.deltas = {12.5f, std::vector<uint8_t>(kVerticesPerPage, 3)};
+  const auto good = EncodeElevation(page);
   std::mt19937 random(5);
   for (int i = 0; i < 300; ++i) {
     auto bad = good;
