@@ -88,6 +88,12 @@ class Selection {
         eye_height_m_(ToGeodetic(matrices.eye_ecef).height_m) {
     const double tan_half = std::tan(0.5 * view.vertical_fov.value);
     half_picture_ = {tan_half * view.width_px / view.height_px, tan_half};
+    if (!sight_.perspective) return;
+    for (const glm::dvec3& inward : sight_.inwards_ecef) {
+      const glm::dvec3 ahead = sight_.forward_ecef - glm::dot(sight_.forward_ecef, inward) * inward;
+      guarded_inwards_.push_back(std::sqrt(1.0 - kBesideGuard * kBesideGuard) * inward +
+                                 kBesideGuard * glm::normalize(ahead));
+    }
   }
 
   Cut Run() {
@@ -294,12 +300,21 @@ class Selection {
     return PartOf({.slot = slot, .source = source, .type = type}, source, node);
   }
 
+  // All of it lies beyond one side of the picture, and by kBesideGuard at least: it may be turned to before the next
+  // list.
+  bool IsBeside(const GroundBox& box) const {
+    return std::any_of(guarded_inwards_.begin(), guarded_inwards_.end(),
+                       [&](const glm::dvec3& inward) { return -box.LeastAlong(matrices_.eye_ecef, -inward) < 0; });
+  }
+
   Measure MeasureOf(const TerrainPage& page) const {
     const BoundingSphere sphere{page.center_ecef, page.radius_m};
+    std::optional<GroundBox> box;
+    if (sight_.perspective && page.node.level() >= kBoxLevel) box.emplace(page);
     Measure measure;
     if (matrices_.horizon.Hides(sphere)) {
       measure.share = 0;
-    } else if (matrices_.frustum.Hides(sphere)) {
+    } else if (matrices_.frustum.Hides(sphere) || (box && IsBeside(*box))) {
       measure.share = sight_.perspective ? kShareBesidePicture : kShareBesideMap;
     }
     const glm::dvec3 center = (page.center_ecef - matrices_.eye_ecef) * view_.ecef_from_camera;  // camera axes
@@ -312,10 +327,9 @@ class Selection {
     }
     double nearest = std::max({glm::length(center) - page.radius_m, eye_height_m_ - page.max_height_m, kNearest_m});
     double nearest_depth = -center.z - page.radius_m;
-    if (page.node.level() >= kBoxLevel) {
-      const GroundBox box(page);
-      nearest = std::max(nearest, box.DistanceTo(matrices_.eye_ecef));
-      nearest_depth = std::max(nearest_depth, box.LeastAlong(matrices_.eye_ecef, sight_.forward_ecef));
+    if (box) {
+      nearest = std::max(nearest, box->DistanceTo(matrices_.eye_ecef));
+      nearest_depth = std::max(nearest_depth, box->LeastAlong(matrices_.eye_ecef, sight_.forward_ecef));
     }
     nearest_depth = std::max(nearest_depth, sight_.cos_corner * nearest);
     measure.nearest_depth_m = nearest_depth;
@@ -367,6 +381,7 @@ class Selection {
   PageAccess& pages_;
   const std::span<const DataType> before_;
   const Sight sight_;
+  std::vector<glm::dvec3> guarded_inwards_;  // Sight::inwards_ecef of a picture that is wider by kBesideGuard
   const double eye_height_m_;
   glm::dvec2 half_picture_{};     // of the picture's half sides on the plane at depth 1
   std::vector<Branch> branches_;  // the roots first

@@ -14,7 +14,9 @@
 // / z, so its greatest value over a quadnode is at a corner of what the quadnode covers of the picture; each quadnode
 // takes that once, as error_scale. z, and g where it is less, are taken anew for every post (post_selection.h). What is
 // out of sight, quadnodes and triangles within them (likewise), keeps a share of its error, so that turning the head
-// does not start from nothing.
+// does not start from nothing. A quadnode is out of sight where its sphere is, or where the box around its ground lies
+// beyond one side of a picture that is wider by kBesideGuard: near a pole quadnodes are slices, of which spheres say
+// nothing.
 //
 // Steps. Where a layer has gone on to another of its steps (step_change.h), a quadnode shows the step before until the
 // image of the new one that suits it is on the GPU, or one as fine as that of the step before: nothing coarser is
@@ -35,6 +37,7 @@
 namespace belvedere {
 
 inline constexpr double kShareBesidePicture = 0.08;  // of the error that counts beside a perspective picture
+inline constexpr double kBesideGuard = 0.05;         // sine of an angle: nearer to the picture nothing is beside it
 
 // What the cut needs to know of pages; whatever it is given stays valid as long as the list that is being built.
 class PageAccess {

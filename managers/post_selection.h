@@ -44,7 +44,6 @@ struct PostTriangle {
 
 // By what share of its nearest depth the eye may move while a choice is kept, and errors may grow.
 inline constexpr double kKeepMargin = 0.02;
-inline constexpr double kBesideGuard = 0.05;  // sine of an angle
 
 class PostSelection {
  public:

@@ -219,6 +219,30 @@ TEST_F(CutTest, BehindTheHorizonAndBesideThePictureIsCoarser) {
   }
 }
 
+// At a pole quadnodes are slices as long as their sphere is wide.
+TEST_F(CutTest, SlicesBesideThePictureAreCoarserAndNothingInItIs) {
+  LookFrom(89.3, -76, 1500, -8);
+  view_.ecef_from_camera = CameraAxes(89.3, -76, Radians::FromDegrees(110), Radians::FromDegrees(-8), {});
+  const ViewMatrices matrices = MatricesOf(view_, 0, 1500);
+  const Cut cut = SelectCut(view_, matrices, layers_, kTerrain, {}, pages_, before_);
+  int fine = 0, by_sphere = 0;
+  for (const CutNode& drawn : cut.nodes) {
+    const BoundingSphere sphere{drawn.page->center_ecef, drawn.page->radius_m};
+    by_sphere += drawn.node.level() >= 4 && !matrices.horizon.Hides(sphere) && !matrices.frustum.Hides(sphere) ? 1 : 0;
+    fine += drawn.node.level() >= 4 && drawn.visible ? 1 : 0;
+    if (drawn.visible) continue;
+    const GeoBox box = drawn.node.Box();
+    for (int i = 0; i < 32 * 32; ++i) {
+      const double latitude = box.south_deg + (i / 32 + 0.5) / 32 * drawn.node.SizeDegrees();
+      const double longitude = box.west_deg + (i % 32 + 0.5) / 32 * drawn.node.SizeDegrees();
+      const BoundingSphere point{ToEcef({latitude, longitude, i % 2 == 0 ? 0.0 : 1000.0}), 1};
+      ASSERT_TRUE(matrices.frustum.Hides(point) || matrices.horizon.Hides(point)) << drawn.node.ToString();
+    }
+  }
+  EXPECT_GT(fine, 5);
+  EXPECT_LT(fine, 0.8 * by_sphere);
+}
+
 TEST_F(CutTest, AnAncestorsImageServesThroughASubRectangle) {
   const Cut cut = Select();
   for (const CutNode& node : cut.nodes) {
