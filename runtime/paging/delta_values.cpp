@@ -424,17 +424,33 @@ std::vector<float> DeltaValuesOf(std::span<const TerrainVertex> vertices, const 
 
 std::array<float, kBisections> SpreadsOf(std::span<const TerrainVertex> vertices) {
   constexpr float kRoundedUp = 1.000001F;
+  const auto place = [&](int column, int row) { return PlaceOf(vertices[static_cast<size_t>(row * kPosts + column)]); };
   std::array<float, kBisections> spread_m{};
   for (int level = 0; level < kBisectionLevels; ++level) {
+    const int span = HalfSpan(level);
     float squared = 0;
-    ForEachPost(level, [&](Post post) {
-      const Split split = SplitAt(post);
-      const glm::vec3 place = PlaceOf(vertices[static_cast<size_t>(post.index())]);
-      for (const Post corner : {split.end_a, split.end_b, split.apex_a, split.apex_b}) {
-        if (!corner.inside()) continue;
-        squared = std::max(squared, SquaredDistance(PlaceOf(vertices[static_cast<size_t>(corner.index())]), place));
+    const auto widen = [&](const glm::vec3& a, const glm::vec3& b) {
+      squared = std::max(squared, SquaredDistance(a, b));
+    };
+    if (level % 2 == 0) {  // the corners are those of a square around the post
+      for (int row = span; row < kPosts; row += 2 * span) {
+        for (int column = span; column < kPosts; column += 2 * span) {
+          const glm::vec3 middle = place(column, row);
+          for (const int north : {-span, span}) {
+            widen(middle, place(column - span, row + north));
+            widen(middle, place(column + span, row + north));
+          }
+        }
       }
-    });
+    } else {  // the corners are next to it; of any two posts that are, one is of the level
+      for (int row = 0; row < kPosts; row += span) {
+        for (int column = 0; column < kPosts; column += span) {
+          const glm::vec3 here = place(column, row);
+          if (column + span < kPosts) widen(here, place(column + span, row));
+          if (row + span < kPosts) widen(here, place(column, row + span));
+        }
+      }
+    }
     spread_m[static_cast<size_t>(level)] = std::sqrt(squared) * kRoundedUp;
   }
   return spread_m;
