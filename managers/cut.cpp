@@ -89,10 +89,10 @@ class Selection {
     const double tan_half = std::tan(0.5 * view.vertical_fov.value);
     half_picture_ = {tan_half * view.width_px / view.height_px, tan_half};
     if (!sight_.perspective) return;
-    for (const glm::dvec3& inward : sight_.inwards_ecef) {
-      const glm::dvec3 ahead = sight_.forward_ecef - glm::dot(sight_.forward_ecef, inward) * inward;
-      guarded_inwards_.push_back(std::sqrt(1.0 - kBesideGuard * kBesideGuard) * inward +
-                                 kBesideGuard * glm::normalize(ahead));
+    for (size_t side = 0; side < outwards_.size(); ++side) {
+      const glm::dvec3& inward = sight_.inwards_ecef[side];
+      const glm::dvec3 ahead = glm::normalize(sight_.forward_ecef - glm::dot(sight_.forward_ecef, inward) * inward);
+      outwards_[side] = -std::sqrt(1.0 - kBesideGuard * kBesideGuard) * inward - kBesideGuard * ahead;
     }
   }
 
@@ -303,8 +303,8 @@ class Selection {
   // All of it lies beyond one side of the picture, and by kBesideGuard at least: it may be turned to before the next
   // list.
   bool IsBeside(const GroundBox& box) const {
-    return std::any_of(guarded_inwards_.begin(), guarded_inwards_.end(),
-                       [&](const glm::dvec3& inward) { return -box.LeastAlong(matrices_.eye_ecef, -inward) < 0; });
+    return std::any_of(outwards_.begin(), outwards_.end(),
+                       [&](const glm::dvec3& outward) { return box.LeastAlong(matrices_.eye_ecef, outward) > 0; });
   }
 
   Measure MeasureOf(const TerrainPage& page) const {
@@ -381,7 +381,7 @@ class Selection {
   PageAccess& pages_;
   const std::span<const DataType> before_;
   const Sight sight_;
-  std::vector<glm::dvec3> guarded_inwards_;  // Sight::inwards_ecef of a picture that is wider by kBesideGuard
+  std::array<glm::dvec3, 4> outwards_{};  // away from the sides of a picture that is wider by kBesideGuard
   const double eye_height_m_;
   glm::dvec2 half_picture_{};     // of the picture's half sides on the plane at depth 1
   std::vector<Branch> branches_;  // the roots first

@@ -69,14 +69,14 @@ struct PostSelection::LocalView {
   };
   Corners LookAtCorners(Post post, int level, float delta_m) const {
     constexpr auto kPerMetre = static_cast<float>(1.0 / kCurvature_m);
-    const glm::vec3 up = glm::vec3(0, 0, 1) + PlaceOf(post) * kPerMetre;
+    const glm::vec3 up = glm::vec3(0, 0, 1) + PlaceOfPost(post) * kPerMetre;
     const float along = glm::dot(up, forward);
     float least_depth_m = std::numeric_limits<float>::max();
     float stretch = 0;
     const Split split = SplitAt(post);
     for (const Post corner : {split.end_a, split.end_b, split.apex_a, split.apex_b}) {
       if (!corner.inside()) continue;
-      const glm::vec3 away = PlaceOf(corner) - eye;
+      const glm::vec3 away = PlaceOfPost(corner) - eye;
       const float depth_m = glm::dot(away, forward);
       if (depth_m <= kLeastDepth_m) return {};  // what is behind the eye has no place in the picture
       least_depth_m = std::min(least_depth_m, depth_m);
@@ -87,23 +87,18 @@ struct PostSelection::LocalView {
     return {least_depth_m - delta_m * std::abs(along), std::min(1.0F, stretch / greatest_stretch)};
   }
 
-  glm::vec3 PlaceOf(Post post) const {
-    const TerrainVertex& vertex = page.vertices[static_cast<size_t>(post.index())];
-    return {vertex.x, vertex.y, vertex.z};
-  }
+  glm::vec3 PlaceOfPost(Post post) const { return PlaceOf(page.vertices[static_cast<size_t>(post.index())]); }
 
   // All triangles that the post splits lie beside the picture, and well so.
-  bool IsBeside(int post, int level) const {
-    const TerrainVertex& vertex = page.vertices[static_cast<size_t>(post)];
-    return sides.IsBeyond({vertex.x, vertex.y, vertex.z}, page.spread_m[static_cast<size_t>(level)],
+  bool IsBeside(Post post, int level) const {
+    return sides.IsBeyond(PlaceOfPost(post), page.spread_m[static_cast<size_t>(level)],
                           static_cast<float>(kBesideGuard));
   }
 
   // Least depth of any point of the triangles that the post splits.
-  float LeastDepth(int post, int level) const {
+  float LeastDepth(Post post, int level) const {
     const float spread_m = page.spread_m[static_cast<size_t>(level)];
-    const TerrainVertex& vertex = page.vertices[static_cast<size_t>(post)];
-    const glm::vec3 away(vertex.x - eye.x, vertex.y - eye.y, vertex.z - eye.z);
+    const glm::vec3 away = PlaceOfPost(post) - eye;
     // What is seen lies within cos_corner of the line of view; what lies beside the picture counts as if it did.
     return std::max({nearest_depth_m, glm::dot(away, forward) - spread_m, (glm::length(away) - spread_m) * cos_corner});
   }
@@ -165,14 +160,14 @@ void PostSelection::Test(Post post, int level, const LocalView& view) {
   // Most posts are done with before their place is looked up in memory.
   float least_depth_m = view.perspective ? view.nearest_depth_m : 1.0F;
   const float stay = state == kDrawnBefore ? stay_ : 1.0F;
-  if (error * stay > least_depth_m && view.perspective) least_depth_m = view.LeastDepth(post.index(), level);
+  if (error * stay > least_depth_m && view.perspective) least_depth_m = view.LeastDepth(post, level);
   least_depth_m = std::max(least_depth_m, kLeastDepth_m);
   if (error * stay > least_depth_m && view.greatest_stretch > 0) {
     const LocalView::Corners corners = view.LookAtCorners(post, level, delta_m);
     error *= corners.share_of_greatest;
     least_depth_m = std::max(least_depth_m, corners.least_depth_m);
   }
-  if (error * stay > least_depth_m && view.sides.any() && view.IsBeside(post.index(), level)) {
+  if (error * stay > least_depth_m && view.sides.any() && view.IsBeside(post, level)) {
     error *= static_cast<float>(kShareBesidePicture);
     left_out_beside_ |= error * stay <= least_depth_m;
   }

@@ -1,7 +1,7 @@
 #include "preproc/build.h"
 
 #include "preproc/composite.h"
-#include "preproc/finest_surface.h"
+#include "preproc/deltas_from_children.h"
 #include "preproc/page_sink.h"
 #include "preproc/plan.h"
 #include "preproc/progress.h"

@@ -5,7 +5,7 @@
 // triangles of a right-triangle bisection of the page. With this rule a child's triangles never cross a parent's edge,
 // so the largest distance is at one of the child's posts.
 //
-// Threads: pure functions.
+// Units: metres, or halves of a millimetre where it says so; heights over the ellipsoid. Threads: pure functions.
 #pragma once
 
 #include "runtime/paging/page.h"

@@ -9,8 +9,6 @@
 namespace belvedere {
 namespace {
 
-constexpr double kMetresPerMillimetre = 1e-3;
-
 double Mix(double a, double b, double share) {
   return share == 0 ? a : a + share * (b - a);
 }

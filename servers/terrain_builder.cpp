@@ -49,10 +49,9 @@ glm::vec3 NormalAt(const RowGeometry& row, const ColumnGeometry& column, const g
   return glm::normalize(ecef * ecef_from_frame);
 }
 
-std::vector<TerrainVertex> VerticesOf(Quadcode node, const HeightField& field) {
+std::vector<TerrainVertex> VerticesOf(Quadcode node, const PostGrid& grid, const HeightField& field) {
   const Frame frame = FrameOf(node);
   const glm::mat3 ecef_from_frame(frame.ecef_from_frame);
-  const PostGrid grid(node);
   std::vector<TerrainVertex> vertices(kVerticesPerPage);
   size_t index = 0;
   for (const RowGeometry& row : grid.rows) {
@@ -93,19 +92,10 @@ void Lay(const std::vector<glm::dvec3>& posts_ecef, Side side, const Frame& fram
   }
 }
 
-// The builder's delta values are those of the page's own posts, in their places.
-bool CanUseStored(const TerrainInput& input) {
-  return input.heights != nullptr && input.heights_node == input.node && !input.heights->deltas.steps.empty() &&
-         input.exaggeration == 1 &&
-         std::all_of(input.laid_ecef.begin(), input.laid_ecef.end(), [](const auto& laid) { return laid.empty(); });
-}
-
-}  // namespace
-
-BoundingSphere BoundsOf(Quadcode node, double min_height_m, double max_height_m) {
+// A sphere around all that can be drawn of a quadnode whose heights lie between the two.
+BoundingSphere BoundsOf(Quadcode node, const PostGrid& grid, double min_height_m, double max_height_m) {
   // The border at both heights says all: seen from the middle, nothing within a shell this small is further than its
   // rim.
-  const PostGrid grid(node);
   std::vector<glm::dvec3> points;
   points.reserve(8 * kPosts + 2);
   for (const double height_m : {min_height_m, max_height_m}) {
@@ -136,6 +126,15 @@ BoundingSphere BoundsOf(Quadcode node, double min_height_m, double max_height_m)
   sphere.radius_m = std::sqrt(squared) + CellSagitta(node) + rounding_m;
   return sphere;
 }
+
+// The builder's delta values are those of the page's own posts, in their places.
+bool CanUseStored(const TerrainInput& input) {
+  return input.heights != nullptr && input.heights_node == input.node && !input.heights->deltas.steps.empty() &&
+         input.exaggeration == 1 &&
+         std::all_of(input.laid_ecef.begin(), input.laid_ecef.end(), [](const auto& laid) { return laid.empty(); });
+}
+
+}  // namespace
 
 std::vector<glm::dvec3> BorderPosts(const TerrainInput& input, Side side) {
   const HeightField field = SampleHeights(input.node, input.heights, input.heights_node, input.exaggeration);
@@ -188,9 +187,10 @@ std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input) {
     max_height_m = std::max(max_height_m, static_cast<double>(input.heights->max_m) * input.exaggeration);
   }
 
+  const PostGrid grid(input.node);
   auto page = std::make_unique<TerrainPage>();
   page->node = input.node;
-  page->vertices = VerticesOf(input.node, field);
+  page->vertices = VerticesOf(input.node, grid, field);
   page->error_m = *std::max_element(errors_m.begin(), errors_m.end());
   page->min_height_m = static_cast<float>(min_height_m);
   page->max_height_m = static_cast<float>(max_height_m);
@@ -201,7 +201,7 @@ std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input) {
   }
   page->deltas = CanUseStored(input) ? RestoreDeltas(input.heights->deltas) : DeltaValuesOf(page->vertices, errors_m);
   page->spread_m = SpreadsOf(page->vertices);
-  const BoundingSphere bounds = BoundsOf(input.node, page->min_height_m, page->max_height_m);
+  const BoundingSphere bounds = BoundsOf(input.node, grid, page->min_height_m, page->max_height_m);
   page->center_ecef = bounds.center_ecef;
   page->radius_m = bounds.radius_m;
   return page;

@@ -52,7 +52,4 @@ std::vector<glm::dvec3> LaidOn(Quadcode node, Side side, Quadcode coarser, const
 
 std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input);
 
-// A sphere around all that can be drawn of a quadnode whose heights lie between the two.
-BoundingSphere BoundsOf(Quadcode node, double min_height_m, double max_height_m);
-
 }  // namespace belvedere

@@ -1,11 +1,10 @@
 #include "runtime/app/station.h"
 
 #include "runtime/app/settings.h"
+#include "runtime/base/heap.h"
 #include "runtime/base/log.h"
 #include "runtime/paging/terrain_height.h"
 #include "servers/stock_modules.h"
-
-#include <malloc.h>
 
 #include <algorithm>
 #include <utility>
@@ -14,13 +13,12 @@ namespace belvedere {
 namespace {
 
 constexpr size_t kMostFailuresShown = 3;
-constexpr int kOwnMapping_bytes = 128 * 1024;  // from here on blocks go back to the system when they are freed (0009)
 
 }  // namespace
 
 Result<std::unique_ptr<Station>> Station::Start(const StationOptions& options, const Clock& clock,
                                                 std::unique_ptr<Context> context) {
-  mallopt(M_MMAP_THRESHOLD, kOwnMapping_bytes);
+  MapLargeBlocksAlone();
   std::unique_ptr<Station> station(new Station(clock, {options.render.colour_slots, options.render.overlay_slots}));
   if (Status status = station->StartPaging(options); !status.ok()) return status;
   ObjectTable::Options table;

@@ -6,8 +6,7 @@
 // A view is a channel with its two managers, drawn by the render thread in a window or off-screen. What can be done
 // without is done without: a feed whose port is taken or a folder without models is a line for the user, not an end.
 //
-// Start also has the heap give large blocks back to the system when they are freed, for the whole process (decision
-// 0009).
+// Start also has the heap give large blocks back to the system, for the whole process (runtime/base/heap.h).
 //
 // Threads: the UI thread. Owns every other thread but that of a traffic sender.
 #pragma once

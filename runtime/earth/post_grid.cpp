@@ -29,6 +29,8 @@ PostGrid::PostGrid(Quadcode node, int per_cell) {
   BELVEDERE_CHECK(per_cell > 0 && static_cast<uint32_t>(per_cell) <= node.PostSpacing());
   const uint32_t spacing = node.PostSpacing() / static_cast<uint32_t>(per_cell);
   const int points = kCells * per_cell + 1;
+  rows.reserve(static_cast<size_t>(points));
+  columns.reserve(static_cast<size_t>(points));
   GridPoint point = node.SouthWest();
   for (int i = 0; i < points; ++i) {
     rows.push_back(RowAt(point.latitude_deg()));

@@ -29,7 +29,8 @@ struct ColumnGeometry {
 glm::dvec3 EcefAt(const RowGeometry& row, const ColumnGeometry& column, double height_m);
 
 struct PostGrid {
-  // per_cell: points along each side of a cell, a power of two. REQUIRES: per_cell <= node.PostSpacing()
+  // per_cell: intervals between points along each side of a cell, a power of two. REQUIRES: per_cell <=
+  // node.PostSpacing()
   explicit PostGrid(Quadcode node, int per_cell = 1);
 
   std::vector<RowGeometry> rows;  // kCells * per_cell + 1, from the south
@@ -37,6 +38,12 @@ struct PostGrid {
 
   glm::dvec3 At(size_t column, size_t row, double height_m) const {
     return EcefAt(rows[row], columns[column], height_m);
+  }
+  // The vertical there, a unit vector.
+  glm::dvec3 UpAt(size_t column, size_t row) const {
+    const auto& [sin_longitude, cos_longitude] = columns[column];
+    const RowGeometry& parallel = rows[row];
+    return {parallel.cos_latitude * cos_longitude, parallel.cos_latitude * sin_longitude, parallel.sin_latitude};
   }
 };
 

@@ -3,8 +3,8 @@
 #include "runtime/base/status.h"
 #include "runtime/earth/bisection.h"
 #include "runtime/earth/ellipsoid.h"
-#include "runtime/earth/post_grid.h"
 #include "runtime/earth/units.h"
+#include "runtime/paging/roundness.h"
 
 #include <glm/geometric.hpp>
 
@@ -47,10 +47,6 @@ float ErrorAround(Post post, const ErrorBlocks& errors_m) {
     }
   }
   return most;
-}
-
-glm::vec3 PlaceOf(const TerrainVertex& vertex) {
-  return {vertex.x, vertex.y, vertex.z};
 }
 
 float SquaredDistance(const glm::vec3& a, const glm::vec3& b) {
@@ -135,26 +131,6 @@ class OwnSurface {
  private:
   PointRaster posts_{kVerticesPerPage};
   std::vector<float> left_out_ = std::vector<float>(kVerticesPerPage + kSpare);
-};
-
-// The ellipsoid under a quadnode as a paraboloid over columns and rows of FinestSurface, 0 in the middle.
-class Paraboloid {
- public:
-  explicit Paraboloid(Quadcode node) {
-    const GeoBox box = node.Box();
-    const RowGeometry row = RowAt(0.5 * (box.south_deg + box.north_deg));
-    const double step = node.SizeDegrees() / (kCells * FinestSurface::kPerCell) * kRadiansPerDegree;
-    const double east_m = row.prime_vertical_m * row.cos_latitude * row.cos_latitude;
-    per_column_m_ = 0.5 * east_m * step * step;
-    per_row_m_ = 0.5 * row.meridian_m * step * step;
-  }
-  double At(int column, int row) const {
-    const double x = column - kCells, y = row - kCells;
-    return -per_column_m_ * x * x - per_row_m_ * y * y;
-  }
-
- private:
-  double per_column_m_ = 0, per_row_m_ = 0;
 };
 
 // Heights of the finest surface over those of the triangles, and the reverse, both on the paraboloid.
@@ -320,75 +296,6 @@ std::vector<float> DeltasBy(const Of& of) {
   for (const Post corner : kCorners) deltas_m[static_cast<size_t>(corner.index())] = greatest;
   return deltas_m;
 }
-
-// What the ellipsoid does to triangles that the paraboloid does not say, along the vertical and across it, at most, for
-// the posts of each row: meridians are all alike.
-class Roundness {
- public:
-  static constexpr int kPerCell = FinestSurface::kPerCell;
-  struct Rest {
-    double up_m = 0, aside_m = 0;
-  };
-
-  Roundness(Quadcode node, const Paraboloid& paraboloid) : grid_(node, kPerCell), paraboloid_(paraboloid) {
-    for (int level = 0; level < kBisectionLevels; ++level) {
-      const int most_column = 3 * HalfSpan(level);  // as many posts of a row as there are ways for hypotenuses to run
-      ForEachPost(level, [&](Post post) {
-        if (post.column > most_column) return;
-        const Split split = SplitAt(post);
-        for (const Post apex : {split.apex_a, split.apex_b}) {
-          if (apex.inside()) Widen(apex, split, rests_[static_cast<size_t>(level)][static_cast<size_t>(post.row)]);
-        }
-      });
-    }
-  }
-  const Rest& at(Post post, int level) const {
-    return rests_[static_cast<size_t>(level)][static_cast<size_t>(post.row)];
-  }
-
- private:
-  static constexpr int kSamples = 4;  // along a leg: all that is looked at is nearly quadratic
-
-  struct Place {
-    glm::dvec3 ecef{};
-    double paraboloid_m = 0;
-  };
-  Place At(int column, int row) const {
-    return {grid_.At(static_cast<size_t>(column), static_cast<size_t>(row), 0), paraboloid_.At(column, row)};
-  }
-
-  void Widen(Post apex, const Split& split, Rest& rest) const {
-    const Post a = PointAt<Roundness>(apex), b = PointAt<Roundness>(split.end_a), c = PointAt<Roundness>(split.end_b);
-    const Place at_a = At(a.column, a.row), at_b = At(b.column, b.row), at_c = At(c.column, c.row);
-    const auto [west, east] = std::minmax({a.column, b.column, c.column});
-    const auto [south, north] = std::minmax({a.row, b.row, c.row});
-    const int step = std::max(1, std::min(east - west, north - south) / kSamples);
-    const double area = (b.column - a.column) * (c.row - a.row) - (c.column - a.column) * (b.row - a.row);
-    for (int row = south; row <= north; row += step) {
-      for (int column = west; column <= east; column += step) {
-        const double u = ((column - a.column) * (c.row - a.row) - (c.column - a.column) * (row - a.row)) / area;
-        const double v = ((b.column - a.column) * (row - a.row) - (column - a.column) * (b.row - a.row)) / area;
-        if (u < 0 || v < 0 || u + v > 1) continue;
-        const Place here = At(column, row);
-        const double w = 1 - u - v;
-        const glm::dvec3 off = here.ecef - (w * at_a.ecef + u * at_b.ecef + v * at_c.ecef);
-        const double known_m =
-            here.paraboloid_m - (w * at_a.paraboloid_m + u * at_b.paraboloid_m + v * at_c.paraboloid_m);
-        const RowGeometry& parallel = grid_.rows[static_cast<size_t>(row)];
-        const ColumnGeometry& meridian = grid_.columns[static_cast<size_t>(column)];
-        const glm::dvec3 up{parallel.cos_latitude * meridian.cos_longitude,
-                            parallel.cos_latitude * meridian.sin_longitude, parallel.sin_latitude};
-        const double up_m = glm::dot(off, up);
-        rest.up_m = std::max(rest.up_m, std::abs(up_m - known_m));
-        rest.aside_m = std::max(rest.aside_m, glm::length(off - up_m * up));
-      }
-    }
-  }
-
-  PostGrid grid_;
-  const Paraboloid& paraboloid_;
-  std::array<std::array<Rest, kPosts>, kBisectionLevels> rests_{};
-};
 
 }  // namespace
 

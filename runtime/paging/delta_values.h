@@ -8,7 +8,7 @@
 //
 // Values are found in floats, and hold but for their rounding: under a millimetre from level 8 on.
 //
-// Units: metres. Frames: any one, cartesian. Threads: pure.
+// Units: metres. Frames: vertices in any one, cartesian; heights over the ellipsoid. Threads: pure.
 #pragma once
 
 #include "runtime/paging/page.h"

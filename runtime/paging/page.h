@@ -47,13 +47,14 @@ class Page {
 // are those of the neighbour. Millimetres in int32: the border is shared bit for bit.
 inline constexpr int kApron = 2;
 inline constexpr int kElevationSide = kPosts + 2 * kApron;  // 133
+inline constexpr double kMetresPerMillimetre = 1e-3;
 
 // What finer pages add is kept for blocks of 8 x 8 cells, so that one cliff does not make the whole page look coarse.
 inline constexpr int kErrorBlocks = 16;  // along each side
 inline constexpr int kBlockCells = kCells / kErrorBlocks;
 using ErrorBlocks = std::array<float, static_cast<size_t>(kErrorBlocks) * kErrorBlocks>;  // row by row
 
-// Delta values in the logarithm: post i has greatest_m / 2^(steps[i] / kDeltaStepsPerOctave), or a little less.
+// Delta values in the logarithm: post i has greatest_m / 2^(steps[i] / kDeltaStepsPerOctave), or less; stored_deltas.h.
 inline constexpr int kDeltaStepsPerOctave = 12;
 struct StoredDeltas {
   float greatest_m = 0;
@@ -110,6 +111,9 @@ struct TerrainVertex {
   float x, y, z;    // metres in the quadnode's coordinate frame (frame.h)
   uint32_t normal;  // outward normal in the same frame: octahedral, snorm16 x in the low half, y in the high half
 };
+inline glm::vec3 PlaceOf(const TerrainVertex& vertex) {
+  return {vertex.x, vertex.y, vertex.z};
+}
 inline constexpr int kVerticesPerPage = kPosts * kPosts;
 inline constexpr int kBisections = 2 * kCellsLog2;  // levels of bisection from the two root triangles to single posts
 

@@ -12,8 +12,7 @@ namespace belvedere {
 namespace {
 
 glm::dvec3 VertexInFrame(const TerrainPage& page, int column, int row) {
-  const TerrainVertex& vertex = page.vertices[static_cast<size_t>(row * kPosts + column)];
-  return {vertex.x, vertex.y, vertex.z};
+  return PlaceOf(page.vertices[static_cast<size_t>(row * kPosts + column)]);
 }
 
 }  // namespace

@@ -146,9 +146,9 @@ TEST_F(CutTest, TexelsKeepTheirBoundAtAnySlant) {
         const int level = drawn.images[0].source.level();
         if (level == 5) continue;  // there are no finer ones
         const GeoBox box = drawn.node.Box();
-        for (int i = 0; i <= 100; ++i) {
-          const double latitude = box.south_deg + i / 10 * 0.0999 * drawn.node.SizeDegrees();
-          const double longitude = box.west_deg + i % 10 * 0.1111 * drawn.node.SizeDegrees();
+        for (int i = 0; i < 100; ++i) {
+          const double latitude = box.south_deg + i / 10 * 0.111 * drawn.node.SizeDegrees();
+          const double longitude = box.west_deg + i % 10 * 0.111 * drawn.node.SizeDegrees();
           if (matrices.horizon.Hides({ToEcef({latitude, longitude, 0.0}), 1.0})) continue;
           greatest_px = std::max(greatest_px, TexelSide_px(view_, matrices, latitude, longitude, level));
         }

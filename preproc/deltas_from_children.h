@@ -1,7 +1,7 @@
-// Finest surface: where the builder's delta values come from (delta_values.h): the posts of a page's children, and
-// between what depths and heights around them all that is finer still lies.
+// Deltas from children: where the builder's delta values come from (delta_values.h): the posts of a page's children,
+// and between what depths and heights around them all that is finer still lies.
 //
-// Threads: pure.
+// Units: metres; heights over the ellipsoid. Threads: pure.
 #pragma once
 
 #include "preproc/surface_error.h"

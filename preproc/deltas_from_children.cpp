@@ -1,4 +1,4 @@
-#include "preproc/finest_surface.h"
+#include "preproc/deltas_from_children.h"
 
 #include "runtime/base/status.h"
 #include "runtime/earth/post_grid.h"
@@ -14,7 +14,6 @@
 namespace belvedere {
 namespace {
 
-constexpr double kMetresPerMillimetre = 1e-3;
 constexpr int kSide = FinestSurface::kSide;
 
 float OverBase(int32_t height_mm, int32_t base_mm) {

@@ -1,6 +1,6 @@
 // The builder's delta values against the finest surface itself, looked up at all its posts.
 
-#include "preproc/finest_surface.h"
+#include "preproc/deltas_from_children.h"
 
 #include "runtime/earth/bisection.h"
 #include "runtime/earth/ellipsoid.h"
@@ -122,7 +122,7 @@ const std::vector<Quadcode>& NodesToTry() {
   return kNodes;
 }
 
-TEST(FinestSurface, WhereTheChildrenAreTheFinestDeltaValuesAreTheGreatestDistances) {
+TEST(DeltasFromChildren, WhereTheChildrenAreTheFinestDeltaValuesAreTheGreatestDistances) {
   for (const Quadcode node : NodesToTry()) {
     const Pages pages(node, 1);
     const std::vector<float> deltas = RestoreDeltas(pages.at(node).deltas);
@@ -139,7 +139,7 @@ TEST(FinestSurface, WhereTheChildrenAreTheFinestDeltaValuesAreTheGreatestDistanc
   }
 }
 
-TEST(FinestSurface, WhatIsFinerThanTheChildrenIsInTheDeltaValues) {
+TEST(DeltasFromChildren, WhatIsFinerThanTheChildrenIsInTheDeltaValues) {
   for (const Quadcode node : NodesToTry()) {
     const Pages pages(node, 3);
     const std::vector<float> deltas = RestoreDeltas(pages.at(node).deltas);
@@ -157,7 +157,7 @@ TEST(FinestSurface, WhatIsFinerThanTheChildrenIsInTheDeltaValues) {
   }
 }
 
-TEST(FinestSurface, StoredDeltaValuesPromiseNoLessAndLittleMore) {
+TEST(DeltasFromChildren, StoredDeltaValuesPromiseNoLessAndLittleMore) {
   std::vector<float> deltas(kVerticesPerPage);
   for (size_t i = 0; i < deltas.size(); ++i) deltas[i] = 12'345.0F * std::exp2(-static_cast<float>(i) / 900.0F);
   const std::vector<float> restored = RestoreDeltas(StoreDeltas(deltas));
