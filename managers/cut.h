@@ -82,7 +82,7 @@ struct CutNode {
 ImageUse PartOf(const ImageUse& image, Quadcode node, Quadcode descendant);
 
 struct CutLimits {
-  int max_nodes = 1000;  // quadnodes in a cut; more are not refined
+  int max_nodes = 8000;  // quadnodes in a cut; more are not refined
 };
 
 struct Cut {

@@ -34,11 +34,6 @@ ViewMatrices MatricesOver(const DisplayList& terrain, const ViewParameters& para
   return MatricesOf(raised, now_s, kLeastOverGround_m);
 }
 
-RenderOptions WithDefaults(RenderOptions options, const ContextFacts& facts) {
-  if (options.samples < 0) options.samples = facts.software ? 0 : 4;
-  return options;
-}
-
 }  // namespace
 
 struct Renderer::View {
@@ -74,7 +69,7 @@ Result<std::unique_ptr<Renderer>> Renderer::Make(const RenderOptions& options, c
                                                  const Clock& clock) {
   Result<ContextFacts> facts = InspectContext();
   if (!facts.ok()) return facts.status();
-  const RenderOptions complete = WithDefaults(options, *facts);
+  const RenderOptions complete = WithDefaults(options, facts->software);
   auto renderer = std::unique_ptr<Renderer>(new Renderer(complete, layers, clock, std::move(*facts)));
   if (!renderer->atlas_.font().ok()) LogWarning("{}", renderer->atlas_.font().message());
   return renderer;
@@ -119,6 +114,7 @@ void Renderer::SetNotices(std::vector<std::string> notices) {
 }
 
 bool Renderer::FetchNews(View& view) {
+  const TraceSpan span("render.lists");
   bool news = false;
   if (auto newest = view.channel->parameters.Get(); newest != view.parameters) {
     view.parameters = std::move(newest);

@@ -19,7 +19,7 @@ constexpr size_t kMostFailuresShown = 3;
 Result<std::unique_ptr<Station>> Station::Start(const StationOptions& options, const Clock& clock,
                                                 std::unique_ptr<Context> context) {
   MapLargeBlocksAlone();
-  std::unique_ptr<Station> station(new Station(clock, {options.render.colour_slots, options.render.overlay_slots}));
+  std::unique_ptr<Station> station(new Station(clock));
   if (Status status = station->StartPaging(options); !status.ok()) return status;
   ObjectTable::Options table;
   table.timeout_s = options.feed.timeout_s;
@@ -29,6 +29,8 @@ Result<std::unique_ptr<Station>> Station::Start(const StationOptions& options, c
       RenderThread::Start(options.render, station->paging_->layers, clock, std::move(context));
   if (!render.ok()) return render.status();
   station->render_ = std::move(*render);
+  const RenderOptions complete = WithDefaults(options.render, station->render_->facts().software);
+  station->image_slots_ = {complete.colour_slots, complete.overlay_slots};
   return station;
 }
 

@@ -73,12 +73,12 @@ class Station {
     std::unique_ptr<ObjectManager> objects;
   };
 
-  Station(const Clock& clock, ImageLimits image_slots) : clock_(clock), image_slots_(image_slots) {}
+  explicit Station(const Clock& clock) : clock_(clock) {}
   Status StartPaging(const StationOptions& options);
   void StartReceivers(const FeedSpec& feed);
 
   const Clock& clock_;
-  const ImageLimits image_slots_;  // on the GPU
+  ImageLimits image_slots_;  // on the GPU
   std::unique_ptr<Dataset> dataset_;
   Catalogue catalogue_;
   ModuleRegistry registry_;

@@ -115,7 +115,7 @@ FeedSpec ReadFeed(SettingsTable& table) {
 }
 
 void ReadRender(SettingsTable& table, RenderOptions& render) {
-  constexpr int64_t kMostSlots = 1 << 16;
+  constexpr int64_t kMostSlots = 2048;  // layers of a texture that every OpenGL 4.5 has
   Assign(table.Number("max_fps", 0, 1000), render.max_fps);
   Assign(table.Number("upload_ms", 0.1, 1000), render.upload_budget_ms);
   Assign(table.Integer("colour_slots", 33, kMostSlots), render.colour_slots);

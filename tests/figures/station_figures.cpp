@@ -362,7 +362,7 @@ int Soak(const std::string& dataset, double minutes) {
     steady = std::abs(growth) < 0.02;
   }
   const size_t on_gpu =
-      static_cast<size_t>(RenderOptions{}.colour_slots) * ImagePage::MipOffset(kImageMipLevels, ImageFormat::kRGBA8) +
+      static_cast<size_t>(WithDefaults({}, station->render().facts().software).colour_slots) * ImagePage::MipOffset(kImageMipLevels, ImageFormat::kRGBA8) +
       static_cast<size_t>(kOverlaySlots) * ImagePage::MipOffset(kImageMipLevels, ImageFormat::kR8);
   const uint64_t failed = station->paging().cache.Stats().failed_pages;
   fmt::print("images on the GPU {} MiB, budget {} MiB; {} failed pages\n", on_gpu / kMiB, kBudget / kMiB, failed);
