@@ -6,6 +6,7 @@
 #include <time.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <utility>
 
@@ -14,7 +15,8 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr double kPausePerBusy = 1.0;  // a step that takes long comes less often: half of one core at most
+constexpr int kCoresForOthers = 2;  // drawing and page servers
+std::atomic<int> living_threads{0};
 
 // What the thread has had of a core, so that a step that others kept waiting is not taken for a long one.
 double CpuSeconds() {
@@ -24,6 +26,10 @@ double CpuSeconds() {
 }
 
 }  // namespace
+
+double ShareOfCore(int cores, int threads) {
+  return std::clamp(static_cast<double>(cores - kCoresForOthers) / std::max(threads, 1), 0.5, 1.0);
+}
 
 PacedThread::PacedThread(const char* name, double most_per_second, std::function<void()> step)
     : step_(std::move(step)), thread_([this, name, most_per_second] { Run(name, 1.0 / most_per_second); }) {}
@@ -40,6 +46,8 @@ PacedThread::~PacedThread() {
 void PacedThread::Run(const char* name, double period_s) {
   pthread_setname_np(pthread_self(), name);
   Trace::NameThread(name);
+  ++living_threads;
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
   double pause_s = 0;
   while (Pause(pause_s)) {
     const auto begin = SteadyClock::now();
@@ -47,8 +55,11 @@ void PacedThread::Run(const char* name, double period_s) {
     step_();
     const double busy_s = CpuSeconds() - cpu_before_s;
     const double gone_s = std::chrono::duration<double>(SteadyClock::now() - begin).count();
-    pause_s = std::max(period_s - gone_s, kPausePerBusy * busy_s);
+    // A step that takes long comes less often.
+    const double pause_per_busy = 1.0 / ShareOfCore(cores, living_threads) - 1.0;
+    pause_s = std::max(period_s - gone_s, pause_per_busy * busy_s);
   }
+  --living_threads;
 }
 
 bool PacedThread::Pause(double seconds) {

@@ -1,5 +1,6 @@
-// PacedThread: runs a step again and again on a thread of its own, at most so many times a second and never busy for
-// more than half of the time, until destroyed.
+// PacedThread: runs a step again and again on a thread of its own, at most so many times a second, until destroyed. All
+// such threads together leave two of the machine's cores to others; where that is less than half a core for each, or
+// there are no more than two, each takes half of one at most.
 //
 // Threads: constructed and destroyed by one thread; destroying waits for the step that is running, and for no pause.
 #pragma once
@@ -10,6 +11,9 @@
 #include <thread>
 
 namespace belvedere {
+
+// The share of a core that each of so many threads may take, 0.5 to 1.
+double ShareOfCore(int cores, int threads);
 
 class PacedThread {
  public:

@@ -59,7 +59,7 @@ void FrameTarget::Begin(const glm::vec3& background) {
 void FrameTarget::Resolve() {
   if (samples_ == 0) return;
   glBlitNamedFramebuffer(many_framebuffer_.get(), framebuffer_.get(), 0, 0, width_, height_, 0, 0, width_, height_,
-                         GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+                         GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
 std::vector<uint8_t> FrameTarget::ReadRgb() const {
@@ -72,6 +72,10 @@ std::vector<uint8_t> FrameTarget::ReadRgb() const {
 }
 
 std::vector<float> FrameTarget::ReadDepth() const {
+  if (samples_ != 0) {
+    glBlitNamedFramebuffer(many_framebuffer_.get(), framebuffer_.get(), 0, 0, width_, height_, 0, 0, width_, height_,
+                           GL_DEPTH_BUFFER_BIT, GL_NEAREST);
+  }
   std::vector<float> depth(static_cast<size_t>(width_) * static_cast<size_t>(height_));
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_.get());
   glReadPixels(0, 0, width_, height_, GL_DEPTH_COMPONENT, GL_FLOAT, depth.data());

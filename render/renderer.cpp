@@ -54,6 +54,7 @@ struct Renderer::View {
   TerrainPass terrain;
   OverlayBatch overlay, hud;
   bool has_terrain = false, has_objects = false;
+  bool terrain_comes = false;                        // a list is on its way to the GPU
   std::shared_ptr<const ViewParameters> parameters;  // of the last frame
   double drawn_s = -1e9;                             // clock time that it showed
   bool has_news = false;                             // since then
@@ -120,11 +121,15 @@ bool Renderer::FetchNews(View& view) {
     view.parameters = std::move(newest);
     news = true;
   }
-  if (view.channel->terrain_lists.Fetch()) {
+  TripleBuffer<DisplayList>& terrain = view.channel->terrain_lists;
+  if (!view.terrain_comes) view.terrain_comes = terrain.Receive();
+  if (view.terrain_comes && view.terrain.Send(terrain.coming())) {
     news = true;
+    view.terrain_comes = false;
     view.has_terrain = true;
-    pages_.Touch(view.channel->terrain_lists.front(), frame_);
-    view.terrain.SetList(view.channel->terrain_lists.front());
+    terrain.Show();
+    pages_.Touch(terrain.front(), frame_);
+    view.terrain.Show(terrain.front());
   }
   if (view.channel->object_lists.Fetch()) {
     news = true;

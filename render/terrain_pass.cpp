@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <numeric>
 #include <string>
+#include <utility>
 
 namespace belvedere {
 namespace {
@@ -39,9 +40,25 @@ constexpr uint8_t ModeOf(LayerRole role) {
 constexpr double kLightsOff = 0.08;  // sine of the sun's elevation, as in shaders/terrain.vert.glsl
 
 template <typename T>
-void Send(const GlBuffer& buffer, const std::vector<T>& rows) {
+void Replace(const GlBuffer& buffer, const std::vector<T>& rows) {
   glNamedBufferData(buffer.get(), static_cast<GLsizeiptr>(std::max<size_t>(rows.size(), 1) * sizeof(T)),
                     rows.empty() ? nullptr : rows.data(), GL_STREAM_DRAW);
+}
+
+// Makes the buffer large enough; what was in it may be lost.
+void Reserve(const GlBuffer& buffer, size_t& capacity, size_t bytes) {
+  if (bytes <= capacity) return;
+  capacity = bytes + bytes / 4;
+  glNamedBufferData(buffer.get(), static_cast<GLsizeiptr>(capacity), nullptr, GL_DYNAMIC_DRAW);
+}
+
+// Of the bytes [first, last) of two rows of bytes, one after the other, those of one row that begins at `begin`.
+void SendPart(const GlBuffer& buffer, const void* row, size_t row_bytes, size_t begin, size_t first, size_t last) {
+  first = std::clamp(first, begin, begin + row_bytes) - begin;
+  last = std::clamp(last, begin, begin + row_bytes) - begin;
+  if (first == last) return;
+  glNamedBufferSubData(buffer.get(), static_cast<GLintptr>(first), static_cast<GLsizeiptr>(last - first),
+                       static_cast<const uint8_t*>(row) + first);
 }
 
 }  // namespace
@@ -75,13 +92,10 @@ TerrainPass::TerrainPass(const GpuPages& pages, TerrainPrograms& programs)
     : pages_(pages),
       programs_(programs),
       vertex_array_(GlVertexArray::Make()),
-      vertices_(GlBuffer::Make()),
-      indices_(GlBuffer::Make()),
       draw_numbers_(GlBuffer::Make()),
       frames_(GlBuffer::Make()),
       draws_(GlBuffer::Make()) {
   const GLuint array = vertex_array_.get();
-  glVertexArrayVertexBuffer(array, 0, vertices_.get(), 0, sizeof(ListVertex));
   glEnableVertexArrayAttrib(array, 0);
   glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, 0);
   glVertexArrayAttribBinding(array, 0, 0);
@@ -98,7 +112,6 @@ TerrainPass::TerrainPass(const GpuPages& pages, TerrainPrograms& programs)
   glVertexArrayAttribIFormat(array, 4, 1, GL_UNSIGNED_INT, 0);
   glVertexArrayAttribBinding(array, 4, 1);
   glVertexArrayBindingDivisor(array, 1, 1);
-  glVertexArrayElementBuffer(array, indices_.get());
 }
 
 TerrainPass::Layers TerrainPass::LayersOf(uint32_t number, const TerrainDraw& draw, const ViewParameters& view,
@@ -122,9 +135,25 @@ TerrainPass::Layers TerrainPass::LayersOf(uint32_t number, const TerrainDraw& dr
   return layers;
 }
 
-void TerrainPass::SetList(const DisplayList& list) {
-  Send(vertices_, *list.vertices);
-  Send(indices_, list.indices);
+bool TerrainPass::Send(const DisplayList& list) {
+  const size_t vertex_bytes = list.vertices->size() * sizeof(ListVertex);
+  const size_t index_bytes = list.indices.size() * sizeof(uint32_t);
+  if (sent_bytes_ == 0) {
+    Reserve(coming_.vertices, coming_.vertex_capacity, vertex_bytes);
+    Reserve(coming_.indices, coming_.index_capacity, index_bytes);
+  }
+  const size_t last = std::min(sent_bytes_ + kListShareBytes, vertex_bytes + index_bytes);
+  SendPart(coming_.vertices, list.vertices->data(), vertex_bytes, 0, sent_bytes_, last);
+  SendPart(coming_.indices, list.indices.data(), index_bytes, vertex_bytes, sent_bytes_, last);
+  sent_bytes_ = last;
+  return last == vertex_bytes + index_bytes;
+}
+
+void TerrainPass::Show(const DisplayList& list) {
+  std::swap(shown_, coming_);
+  sent_bytes_ = 0;
+  glVertexArrayVertexBuffer(vertex_array_.get(), 0, shown_.vertices.get(), 0, sizeof(ListVertex));
+  glVertexArrayElementBuffer(vertex_array_.get(), shown_.indices.get());
   SetDraws(list);
 }
 
@@ -160,11 +189,11 @@ void TerrainPass::SetDraws(const DisplayList& list) {
     middles_.push_back({UpAt(0.5 * (box.south_deg + box.north_deg), 0.5 * (box.west_deg + box.east_deg)),
                         0.75 * draw.node.SizeDegrees() * kRadiansPerDegree});
   }
-  Send(draws_, rows);
+  Replace(draws_, rows);
   if (rows.size() > numbered_draws_) {
     std::vector<uint32_t> numbers(rows.size() * 2);
     std::iota(numbers.begin(), numbers.end(), 0U);
-    Send(draw_numbers_, numbers);
+    Replace(draw_numbers_, numbers);
     numbered_draws_ = numbers.size();
     glVertexArrayVertexBuffer(vertex_array_.get(), 1, draw_numbers_.get(), 0, sizeof(uint32_t));
   }
@@ -174,7 +203,7 @@ void TerrainPass::SetMatrices(const DisplayList& list, const ViewMatrices& matri
   std::vector<FrameRow> rows;
   rows.reserve(list.frames.size());
   for (const Frame& frame : list.frames) rows.push_back(MakeFrameRow(frame, matrices.clip_from_ecef));
-  Send(frames_, rows);
+  Replace(frames_, rows);
 }
 
 void TerrainPass::Draw(const DisplayList& list, std::span<const uint32_t> draws, const ViewMatrices& matrices,

@@ -1,8 +1,8 @@
 // TerrainPass: draws the surface of one view. Quadnodes use one another's vertices, so that a vertex is the same
 // wherever it is drawn (display_list.h).
 //
-// What a list brings (vertices, indices, draws) goes to the GPU once, when it is new; the matrices of its frames every
-// time. Threads: the render thread.
+// What a list brings (vertices, indices, draws) goes to the GPU once, in shares that no frame waits long for, while the
+// list before it is still drawn; the matrices of its frames go every time. Threads: the render thread.
 #pragma once
 
 #include "render/gl_objects.h"
@@ -42,12 +42,18 @@ class TerrainPrograms {
   std::map<Layers, GlProgram> programs_;
 };
 
+// Bytes of a list that Send takes to the GPU at once.
+inline constexpr size_t kListShareBytes = size_t{4} << 20;
+
 class TerrainPass {
  public:
   TerrainPass(const GpuPages& pages, TerrainPrograms& programs);
 
-  // The list is drawn from now on. REQUIRES: it stays as it is until the next SetList.
-  void SetList(const DisplayList& list);
+  // Takes the next share of a list to the GPU; true when all of it is there. REQUIRES: after the first call, the same
+  // list until that is true, and as it was.
+  bool Send(const DisplayList& list);
+  // The list that was sent is drawn from now on. REQUIRES: it stays as it is until the next Show.
+  void Show(const DisplayList& list);
   // draws: indices of the list's terrain_draws. Layers and tint are those that the view has now.
   void Draw(const DisplayList& list, std::span<const uint32_t> draws, const ViewMatrices& matrices,
             const ViewParameters& view, double since_list_s, const glm::dvec3& sun_ecef);
@@ -60,10 +66,18 @@ class TerrainPass {
   void SetDraws(const DisplayList& list);
   void SetMatrices(const DisplayList& list, const ViewMatrices& matrices);
 
+  // Vertices and indices of a list on the GPU.
+  struct Mesh {
+    GlBuffer vertices = GlBuffer::Make(), indices = GlBuffer::Make();
+    size_t vertex_capacity = 0, index_capacity = 0;  // bytes
+  };
+
   const GpuPages& pages_;
   TerrainPrograms& programs_;
   GlVertexArray vertex_array_;
-  GlBuffer vertices_, indices_, draw_numbers_, frames_, draws_;
+  GlBuffer draw_numbers_, frames_, draws_;
+  Mesh shown_, coming_;
+  size_t sent_bytes_ = 0;  // of the list that is coming
   size_t numbered_draws_ = 0;
   struct Middle {
     glm::dvec3 up_ecef;

@@ -1,6 +1,7 @@
 // Draws off-screen and looks at the pixels.
 #include "render/renderer.h"
 
+#include "render/terrain_pass.h"
 #include "runtime/base/clock.h"
 #include "tests/render/on_stage.h"
 
@@ -43,7 +44,7 @@ class Drawing : public OnStage {
     pins.push_back(std::move(pin));
     stage_->Upload(std::move(pins));
   }
-  Picture Draw(const ViewParameters& view, int step = 8) {
+  void Publish(const ViewParameters& view, int step) {
     stage_->channel->parameters.Publish(view);
     DisplayList& list = stage_->channel->terrain_lists.back();
     list.Clear();
@@ -51,7 +52,11 @@ class Drawing : public OnStage {
     list.number = ++number_;
     list.statistics.height_above_ground_m = 500;
     stage_->channel->terrain_lists.Publish();
+  }
+  Picture Draw(const ViewParameters& view, int step = 8) {
+    Publish(view, step);
     stage_->Frame();
+    for (int i = 0; i < 20 && stage_->channel->frame.Get()->terrain_list != number_; ++i) stage_->Frame();
     return stage_->Take();
   }
 
@@ -250,6 +255,28 @@ TEST_F(Drawing, AMinimisedWindowIsSkipped) {
   stage_->Frame();
   EXPECT_EQ(stage_->channel->frame.Get()->frame, 0U);
   EXPECT_FALSE(stage_->renderer->Capture(1, Renderer::Moment::kOfParameters).ok());
+}
+
+TEST_F(Drawing, ALargeListComesInSharesWhileTheOneBeforeIsDrawn) {
+  Load(Block(10, 10, 12, 4), Rugged);
+  const ViewParameters view = LookAt({10, 10, 3000}, 0, -90, kWidth, kHeight);
+  const Picture before = Draw(view, 32);
+  Publish(view, 1);
+  stage_->Frame();
+  const Picture during = stage_->Take();
+  EXPECT_EQ(during.terrain_list, before.terrain_list);
+  EXPECT_EQ(during.rgb, before.rgb);
+  EXPECT_EQ(during.triangles, before.triangles);
+
+  const DisplayList& list = stage_->channel->terrain_lists.coming();
+  const size_t bytes = list.vertices->size() * sizeof(ListVertex) + list.indices.size() * sizeof(uint32_t);
+  ASSERT_GT(bytes, 2 * kListShareBytes);
+  size_t frames = 1;
+  for (; stage_->Take().terrain_list == before.terrain_list && frames < 100; ++frames) stage_->Frame();
+  EXPECT_EQ(frames, (bytes + kListShareBytes - 1) / kListShareBytes);
+  const Picture after = stage_->Take();
+  EXPECT_EQ(MagentaPixels(after), 0U);
+  EXPECT_GT(after.triangles, 100 * before.triangles);
 }
 
 TEST_F(Drawing, AViewOfWhichNothingChangesKeepsItsPicture) {

@@ -27,6 +27,27 @@ TEST(TripleBuffer, GivesTheNewestAndOnlyOnce) {
   EXPECT_EQ(buffer.front(), 3);
 }
 
+TEST(TripleBuffer, WhatIsReceivedIsShownLater) {
+  TripleBuffer<int> buffer;
+  EXPECT_FALSE(buffer.Receive());
+  const auto publish = [&](int value) {
+    buffer.back() = value;
+    buffer.Publish();
+  };
+  publish(1);
+  ASSERT_TRUE(buffer.Fetch());
+  publish(2);
+  ASSERT_TRUE(buffer.Receive());
+  // However many follow meanwhile, both values of the consumer stay.
+  for (const int value : {3, 4, 5, 6}) publish(value);
+  EXPECT_EQ(buffer.front(), 1);
+  EXPECT_EQ(buffer.coming(), 2);
+  buffer.Show();
+  EXPECT_EQ(buffer.front(), 2);
+  ASSERT_TRUE(buffer.Fetch());
+  EXPECT_EQ(buffer.front(), 6);
+}
+
 TEST(TripleBuffer, NeverShowsAHalfWrittenOrOlderValue) {
   constexpr int kValues = 100'000;
   TripleBuffer<std::array<int, 16>> buffer;
