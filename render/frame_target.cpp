@@ -45,14 +45,16 @@ void FrameTarget::Resize(int width, int height) {
   BELVEDERE_CHECK(glCheckNamedFramebufferStatus(many_framebuffer_.get(), GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE);
 }
 
-void FrameTarget::Begin(const glm::vec3& background) {
+void FrameTarget::Begin(const std::optional<glm::vec3>& background) {
   const GLuint target = samples_ == 0 ? framebuffer_.get() : many_framebuffer_.get();
   glBindFramebuffer(GL_FRAMEBUFFER, target);
   glViewport(0, 0, width_, height_);
-  const std::array<float, 4> colour = {background.r, background.g, background.b, 1.0F};
   const float far_depth = 0.0F;
   glDepthMask(GL_TRUE);
-  glClearNamedFramebufferfv(target, GL_COLOR, 0, colour.data());
+  if (background) {
+    const std::array<float, 4> colour = {background->r, background->g, background->b, 1.0F};
+    glClearNamedFramebufferfv(target, GL_COLOR, 0, colour.data());
+  }
   glClearNamedFramebufferfv(target, GL_DEPTH, 0, &far_depth);
 }
 
@@ -60,6 +62,23 @@ void FrameTarget::Resolve() {
   if (samples_ == 0) return;
   glBlitNamedFramebuffer(many_framebuffer_.get(), framebuffer_.get(), 0, 0, width_, height_, 0, 0, width_, height_,
                          GL_COLOR_BUFFER_BIT, GL_NEAREST);
+}
+
+int FrameTarget::SamplesWorthTheirTime(const Clock& clock) {
+  constexpr int kSamples = 4, kTries = 4;
+  constexpr double kMost_ms = 0.5;
+  FrameTarget target(kSamples);
+  target.Resize(1920, 1080);
+  double least_ms = 1e9;
+  for (int i = 0; i < kTries; ++i) {
+    glFinish();
+    const double start_s = clock.NowSeconds();
+    target.Begin(glm::vec3(0));
+    target.Resolve();
+    glFinish();
+    least_ms = std::min(least_ms, 1000 * (clock.NowSeconds() - start_s));
+  }
+  return least_ms <= kMost_ms ? kSamples : 0;
 }
 
 std::vector<uint8_t> FrameTarget::ReadRgb() const {

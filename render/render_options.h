@@ -11,8 +11,8 @@
 namespace belvedere {
 
 struct RenderOptions {
-  double max_fps = 60;          // frames are not drawn more often; 0: no limit
-  double upload_budget_ms = 4;  // a frame, for all views together; one page is always uploaded
+  double max_fps = 60;           // frames are not drawn more often; 0: no limit
+  double upload_budget_ms = -1;  // a frame, for all views together; one page is always uploaded
   // Slots of GPU memory: 350 KB a colour page, 87 KB an overlay page.
   int colour_slots = -1;
   int overlay_slots = -1;
@@ -22,8 +22,9 @@ struct RenderOptions {
   size_t recorded_samples = size_t{1} << 14;  // of the recorder, one for each view of a frame
 };
 
-// A software renderer: 384 and 480 slots (168 MiB), no multisampling. A GPU, which may have pictures of 8 million pixels
-// to fill: 768 and 2048 slots (426 MiB), 4 samples.
+// A software renderer: 4 ms of uploads, 384 and 480 slots (168 MiB), no multisampling. A GPU, which may have pictures
+// of 8 million pixels to fill: 1 ms of uploads, 768 and 2048 slots (426 MiB). Its samples stay -1 where they are, for
+// the renderer to find out what they cost (FrameTarget::SamplesWorthTheirTime).
 RenderOptions WithDefaults(RenderOptions options, bool software);
 
 }  // namespace belvedere

@@ -70,7 +70,8 @@ Result<std::unique_ptr<Renderer>> Renderer::Make(const RenderOptions& options, c
                                                  const Clock& clock) {
   Result<ContextFacts> facts = InspectContext();
   if (!facts.ok()) return facts.status();
-  const RenderOptions complete = WithDefaults(options, facts->software);
+  RenderOptions complete = WithDefaults(options, facts->software);
+  if (complete.samples < 0) complete.samples = FrameTarget::SamplesWorthTheirTime(clock);
   auto renderer = std::unique_ptr<Renderer>(new Renderer(complete, layers, clock, std::move(*facts)));
   if (!renderer->atlas_.font().ok()) LogWarning("{}", renderer->atlas_.font().message());
   return renderer;
@@ -223,7 +224,7 @@ Renderer::Drawn Renderer::DrawView(View& view, const ViewParameters& parameters,
   glBindBufferBase(GL_UNIFORM_BUFFER, 0, view_block_.get());
 
   view.target.Resize(parameters.width_px, parameters.height_px);
-  view.target.Begin(parameters.background);
+  view.target.Begin(parameters.sky ? std::nullopt : std::optional(parameters.background));
   Drawn drawn;
   if (view.has_terrain) {
     WalkList(terrain, view.matrices, view.visible);

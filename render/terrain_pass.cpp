@@ -94,7 +94,8 @@ TerrainPass::TerrainPass(const GpuPages& pages, TerrainPrograms& programs)
       vertex_array_(GlVertexArray::Make()),
       draw_numbers_(GlBuffer::Make()),
       frames_(GlBuffer::Make()),
-      draws_(GlBuffer::Make()) {
+      draws_(GlBuffer::Make()),
+      commands_(GlBuffer::Make()) {
   const GLuint array = vertex_array_.get();
   glEnableVertexArrayAttrib(array, 0);
   glVertexArrayAttribFormat(array, 0, 3, GL_FLOAT, GL_FALSE, 0);
@@ -218,18 +219,27 @@ void TerrainPass::Draw(const DisplayList& list, std::span<const uint32_t> draws,
   for (const uint32_t number : draws) {
     layers_of_draw_.push_back(LayersOf(number, list.terrain_draws[number], view, since_list_s, sun_ecef));
   }
-  layers_met_ = layers_of_draw_;
-  std::sort(layers_met_.begin(), layers_met_.end());
-  layers_met_.erase(std::unique(layers_met_.begin(), layers_met_.end()), layers_met_.end());
-  for (const Layers& layers : layers_met_) {
+  by_layers_.resize(draws.size());
+  std::iota(by_layers_.begin(), by_layers_.end(), 0U);
+  std::stable_sort(by_layers_.begin(), by_layers_.end(),
+                   [&](uint32_t a, uint32_t b) { return layers_of_draw_[a] < layers_of_draw_[b]; });
+  commands_of_draw_.clear();
+  for (const uint32_t i : by_layers_) {
+    const TerrainDraw& draw = list.terrain_draws[draws[i]];
+    commands_of_draw_.push_back(
+        {.index_count = draw.index_count, .first_index = draw.first_index, .base_instance = draws[i]});
+  }
+  Replace(commands_, commands_of_draw_);
+  glBindBuffer(GL_DRAW_INDIRECT_BUFFER, commands_.get());
+  for (size_t first = 0; first < by_layers_.size();) {
+    const Layers& layers = layers_of_draw_[by_layers_[first]];
+    const auto next = std::find_if(by_layers_.begin() + static_cast<std::ptrdiff_t>(first), by_layers_.end(),
+                                   [&](uint32_t i) { return layers_of_draw_[i] != layers; });
+    const auto last = static_cast<size_t>(next - by_layers_.begin());
     glUseProgram(programs_.For(layers));
-    for (size_t i = 0; i < draws.size(); ++i) {
-      if (layers_of_draw_[i] != layers) continue;
-      const TerrainDraw& draw = list.terrain_draws[draws[i]];
-      const void* first = reinterpret_cast<const void*>(draw.first_index * sizeof(uint32_t));
-      glDrawElementsInstancedBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(draw.index_count), GL_UNSIGNED_INT, first,
-                                          1, draws[i]);
-    }
+    glMultiDrawElementsIndirect(GL_TRIANGLES, GL_UNSIGNED_INT, reinterpret_cast<const void*>(first * sizeof(Command)),
+                                static_cast<GLsizei>(last - first), 0);
+    first = last;
   }
 }
 

@@ -75,7 +75,7 @@ class TerrainPass {
   const GpuPages& pages_;
   TerrainPrograms& programs_;
   GlVertexArray vertex_array_;
-  GlBuffer draw_numbers_, frames_, draws_;
+  GlBuffer draw_numbers_, frames_, draws_, commands_;
   Mesh shown_, coming_;
   size_t sent_bytes_ = 0;  // of the list that is coming
   size_t numbered_draws_ = 0;
@@ -84,9 +84,16 @@ class TerrainPass {
     double reach;  // how far the vertical turns from there within the quadnode, radians
   };
   std::vector<Middle> middles_;  // of the list's draws
+  // As glMultiDrawElementsIndirect has it.
+  struct Command {
+    uint32_t index_count = 0, instance_count = 1, first_index = 0;
+    int32_t base_vertex = 0;
+    uint32_t base_instance = 0;  // the draw's number
+  };
   // Of the draws of one Draw.
   std::vector<Layers> layers_of_draw_;
-  std::vector<Layers> layers_met_;
+  std::vector<uint32_t> by_layers_;  // places in layers_of_draw_, those of the same layers together, front to back
+  std::vector<Command> commands_of_draw_;
 };
 
 }  // namespace belvedere

@@ -37,7 +37,7 @@ struct TourOptions {
   double seconds = 0;     // 0: the whole path
   int64_t cache_MiB = 512;
   double max_fps = 60;
-  double upload_ms = 4;
+  double upload_ms = -1;  // what suits the renderer
   bool hud = true;
   std::optional<double> utc_s;
   double time_rate = 1;

@@ -13,9 +13,11 @@ namespace belvedere::testing {
 class OnStage : public ::testing::Test {
  protected:
   // slots: images of each kind that the GPU has room for.
-  void Open(int slots) {
+  void Open(int slots, int samples = 0) {
     RenderOptions options;
     options.colour_slots = options.overlay_slots = slots;
+    options.samples = samples;
+    stage_.reset();  // one context at a time
     auto stage = Stage::Make(scene_, options, clock_);
     ASSERT_TRUE(stage.ok()) << stage.message();
     stage_ = std::move(*stage);

@@ -257,6 +257,25 @@ TEST_F(Drawing, AMinimisedWindowIsSkipped) {
   EXPECT_FALSE(stage_->renderer->Capture(1, Renderer::Moment::kOfParameters).ok());
 }
 
+TEST_F(Drawing, SamplesMixColoursAtEdgesAndDepthIsThereAsWithout) {
+  // Ground that ends within the picture.
+  const ViewParameters view = LookAt({10.0, 10.0, 30'250}, 20, -90, kWidth, kHeight);
+  Load(Block(10, 10, 12, 2), [](double, double) { return 250.0; });
+  const auto mixed = [&](int samples) {
+    Open(24, samples);
+    const Picture picture = Draw(view);
+    EXPECT_NEAR(picture.depth_m[Middle(picture)], 30'000, 1);
+    const int ground = picture.rgb[3 * Middle(picture) + 1];
+    EXPECT_GT(ground, 60);
+    size_t between = 0;
+    for (size_t i = 1; i < picture.rgb.size(); i += 3)
+      between += picture.rgb[i] > 0 && picture.rgb[i] < ground * 9 / 10 ? 1 : 0;
+    return between;
+  };
+  EXPECT_EQ(mixed(0), 0U);
+  EXPECT_GT(mixed(4), 20U);
+}
+
 TEST_F(Drawing, ALargeListComesInSharesWhileTheOneBeforeIsDrawn) {
   Load(Block(10, 10, 12, 4), Rugged);
   const ViewParameters view = LookAt({10, 10, 3000}, 0, -90, kWidth, kHeight);
