@@ -115,8 +115,16 @@ void Renderer::SetNotices(std::vector<std::string> notices) {
   ++notices_number_;
 }
 
-bool Renderer::FetchNews(View& view) {
+void Renderer::FetchNews() {
   const TraceSpan span("render.lists");
+  size_t list_bytes_left = kListBytesAFrame;
+  for (size_t i = 0; i < views_.size(); ++i) {
+    View& view = *views_[(i + frame_) % views_.size()];  // each is the first in turn
+    view.has_news |= FetchNews(view, list_bytes_left);
+  }
+}
+
+bool Renderer::FetchNews(View& view, size_t& list_bytes_left) {
   bool news = false;
   if (auto newest = view.channel->parameters.Get(); newest != view.parameters) {
     view.parameters = std::move(newest);
@@ -124,7 +132,7 @@ bool Renderer::FetchNews(View& view) {
   }
   TripleBuffer<DisplayList>& terrain = view.channel->terrain_lists;
   if (!view.terrain_comes) view.terrain_comes = terrain.Receive();
-  if (view.terrain_comes && view.terrain.Send(terrain.coming())) {
+  if (view.terrain_comes && view.terrain.Send(terrain.coming(), list_bytes_left)) {
     news = true;
     view.terrain_comes = false;
     view.has_terrain = true;
@@ -184,7 +192,7 @@ bool Renderer::DrawFrame(FrameRecorder& recorder, Context& context) {
   const TraceSpan span("render.frame");
   ++frame_;
   start_s_ = clock_.NowSeconds();
-  for (const auto& view : views_) view->has_news |= FetchNews(*view);
+  FetchNews();
   UploadPages();
   const bool any = std::any_of(views_.begin(), views_.end(), [&](const auto& view) { return HasToBeDrawn(*view); });
   if (!any) {

@@ -39,6 +39,9 @@ class Presenter {
   virtual void Present(GLuint colour_texture, int width, int height) = 0;
 };
 
+// Of terrain lists, taken to the GPU for all views together; a list that is larger comes in shares.
+inline constexpr size_t kListBytesAFrame = size_t{6} << 20;
+
 class Renderer {
  public:
   // REQUIRES: a context is current; layers and clock live longer.
@@ -79,8 +82,9 @@ class Renderer {
   Renderer(const RenderOptions& options, const LayerTable& layers, const Clock& clock, ContextFacts facts);
 
   View* Find(ViewId id);
-  // True when a list or parameters came.
-  bool FetchNews(View& view);
+  // Finds out which views have other parameters or other lists.
+  void FetchNews();
+  bool FetchNews(View& view, size_t& list_bytes_left);
   bool HasToBeDrawn(const View& view) const;
   static bool IsSettled(const View& view, const ViewParameters& parameters, double clock_now_s);
   void UploadPages();

@@ -37,6 +37,10 @@ constexpr uint8_t ModeOf(LayerRole role) {
   return static_cast<uint8_t>(static_cast<int>(role) + 1);
 }
 
+TerrainPrograms::LayerMode ModeOf(const LayerUse& use, bool single) {
+  return {ModeOf(use.role), single, use.opacity != 1 || use.gamma != 1 || use.multiplier != 1};
+}
+
 constexpr double kLightsOff = 0.08;  // sine of the sun's elevation, as in shaders/terrain.vert.glsl
 
 template <typename T>
@@ -130,22 +134,22 @@ TerrainPass::Layers TerrainPass::LayersOf(uint32_t number, const TerrainDraw& dr
     // Neither costs anything where it cannot be seen.
     if (use.role == LayerRole::kNight && sun_sine - reach > kLightsOff) continue;
     if (use.role == LayerRole::kWater && sun_sine + reach < 0) continue;
-    layers.images[i] = {ModeOf(use.role), !pages_.IsColour(draw.images[i].slot),
-                        use.opacity != 1 || use.gamma != 1 || use.multiplier != 1};
+    layers.images[i] = ModeOf(use, !pages_.IsColour(draw.images[i].slot));
   }
   return layers;
 }
 
-bool TerrainPass::Send(const DisplayList& list) {
+bool TerrainPass::Send(const DisplayList& list, size_t& bytes_left) {
   const size_t vertex_bytes = list.vertices->size() * sizeof(ListVertex);
   const size_t index_bytes = list.indices.size() * sizeof(uint32_t);
   if (sent_bytes_ == 0) {
     Reserve(coming_.vertices, coming_.vertex_capacity, vertex_bytes);
     Reserve(coming_.indices, coming_.index_capacity, index_bytes);
   }
-  const size_t last = std::min(sent_bytes_ + kListShareBytes, vertex_bytes + index_bytes);
+  const size_t last = std::min(sent_bytes_ + bytes_left, vertex_bytes + index_bytes);
   SendPart(coming_.vertices, list.vertices->data(), vertex_bytes, 0, sent_bytes_, last);
   SendPart(coming_.indices, list.indices.data(), index_bytes, vertex_bytes, sent_bytes_, last);
+  bytes_left -= last - sent_bytes_;
   sent_bytes_ = last;
   return last == vertex_bytes + index_bytes;
 }
@@ -207,6 +211,32 @@ void TerrainPass::SetMatrices(const DisplayList& list, const ViewMatrices& matri
   Replace(frames_, rows);
 }
 
+// Draws one triangle with each program that the view's layers may ask for, so that none is compiled, which takes a
+// tenth of a second on some drivers, in the midst of a flight. What the triangle looks like does not matter: it is
+// drawn over.
+void TerrainPass::WarmPrograms(const DisplayList& list, std::span<const uint32_t> draws, const ViewParameters& view) {
+  if (warm_for_ == view.image_layers) return;
+  const TerrainDraw& draw = list.terrain_draws[draws.front()];
+  if (draw.index_count == 0) return;
+  warm_for_ = view.image_layers;
+  const void* first = reinterpret_cast<const void*>(draw.first_index * sizeof(uint32_t));
+  for (const bool fading : {true, false}) {
+    // By day there are no lights, on the dark side no glint.
+    for (const LayerRole without : {LayerRole::kNight, LayerRole::kWater, LayerRole::kColour}) {
+      Layers layers;
+      layers.fading = fading;
+      layers.tinted = view.tint != GroundTint::kNone;
+      for (size_t i = 0; i < std::min(layers.images.size(), view.image_layers.size()); ++i) {
+        const LayerUse& use = view.image_layers[i];
+        const bool left_out = use.role == without && without != LayerRole::kColour;
+        if (use.shown() && !left_out) layers.images[i] = ModeOf(use, !pages_.HoldsColour(use.type));
+      }
+      glUseProgram(programs_.For(layers));
+      glDrawElementsInstancedBaseInstance(GL_TRIANGLES, 3, GL_UNSIGNED_INT, first, 1, draws.front());
+    }
+  }
+}
+
 void TerrainPass::Draw(const DisplayList& list, std::span<const uint32_t> draws, const ViewMatrices& matrices,
                        const ViewParameters& view, double since_list_s, const glm::dvec3& sun_ecef) {
   if (draws.empty()) return;
@@ -215,6 +245,7 @@ void TerrainPass::Draw(const DisplayList& list, std::span<const uint32_t> draws,
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 0, frames_.get());
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, 1, draws_.get());
   pages_.BindImages();
+  WarmPrograms(list, draws, view);
   layers_of_draw_.clear();
   for (const uint32_t number : draws) {
     layers_of_draw_.push_back(LayersOf(number, list.terrain_draws[number], view, since_list_s, sun_ecef));

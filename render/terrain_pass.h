@@ -42,16 +42,13 @@ class TerrainPrograms {
   std::map<Layers, GlProgram> programs_;
 };
 
-// Bytes of a list that Send takes to the GPU at once.
-inline constexpr size_t kListShareBytes = size_t{4} << 20;
-
 class TerrainPass {
  public:
   TerrainPass(const GpuPages& pages, TerrainPrograms& programs);
 
-  // Takes the next share of a list to the GPU; true when all of it is there. REQUIRES: after the first call, the same
-  // list until that is true, and as it was.
-  bool Send(const DisplayList& list);
+  // Takes a share of a list to the GPU, at most so many bytes, which it takes off `bytes_left`; true when all of the
+  // list is there. REQUIRES: after the first call, the same list until that is true, and as it was.
+  bool Send(const DisplayList& list, size_t& bytes_left);
   // The list that was sent is drawn from now on. REQUIRES: it stays as it is until the next Show.
   void Show(const DisplayList& list);
   // draws: indices of the list's terrain_draws. Layers and tint are those that the view has now.
@@ -64,6 +61,7 @@ class TerrainPass {
                   const glm::dvec3& sun_ecef) const;
   glm::vec4 RowOf(const ImageUse& use) const;
   void SetDraws(const DisplayList& list);
+  void WarmPrograms(const DisplayList& list, std::span<const uint32_t> draws, const ViewParameters& view);
   void SetMatrices(const DisplayList& list, const ViewMatrices& matrices);
 
   // Vertices and indices of a list on the GPU.
@@ -83,7 +81,8 @@ class TerrainPass {
     glm::dvec3 up_ecef;
     double reach;  // how far the vertical turns from there within the quadnode, radians
   };
-  std::vector<Middle> middles_;  // of the list's draws
+  std::vector<Middle> middles_;     // of the list's draws
+  std::vector<LayerUse> warm_for_;  // layers whose programs have been drawn with
   // As glMultiDrawElementsIndirect has it.
   struct Command {
     uint32_t index_count = 0, instance_count = 1, first_index = 0;

@@ -31,6 +31,7 @@ struct LayerUse {
   float opacity = 1, gamma = 1, multiplier = 1;
   bool on = true;
   bool shown() const { return on && opacity > 0; }
+  bool operator==(const LayerUse&) const = default;
 };
 
 // What the ground is tinted by, to see how it is drawn: the error that each quadnode leaves (blue none, green half the

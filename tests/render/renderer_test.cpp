@@ -1,7 +1,6 @@
 // Draws off-screen and looks at the pixels.
 #include "render/renderer.h"
 
-#include "render/terrain_pass.h"
 #include "runtime/base/clock.h"
 #include "tests/render/on_stage.h"
 
@@ -289,10 +288,10 @@ TEST_F(Drawing, ALargeListComesInSharesWhileTheOneBeforeIsDrawn) {
 
   const DisplayList& list = stage_->channel->terrain_lists.coming();
   const size_t bytes = list.vertices->size() * sizeof(ListVertex) + list.indices.size() * sizeof(uint32_t);
-  ASSERT_GT(bytes, 2 * kListShareBytes);
+  ASSERT_GT(bytes, 2 * kListBytesAFrame);
   size_t frames = 1;
   for (; stage_->Take().terrain_list == before.terrain_list && frames < 100; ++frames) stage_->Frame();
-  EXPECT_EQ(frames, (bytes + kListShareBytes - 1) / kListShareBytes);
+  EXPECT_EQ(frames, (bytes + kListBytesAFrame - 1) / kListBytesAFrame);
   const Picture after = stage_->Take();
   EXPECT_EQ(MagentaPixels(after), 0U);
   EXPECT_GT(after.triangles, 100 * before.triangles);
