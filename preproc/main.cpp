@@ -1,6 +1,7 @@
-// belvedere-build: sources to a dataset; what is in a dataset; whether it is whole.
+// belvedere-build: sources to a dataset; what is in a dataset; whether it is whole; and out of it again.
 
 #include "preproc/build.h"
+#include "preproc/export.h"
 #include "preproc/report.h"
 #include "preproc/spec.h"
 #include "runtime/base/clock.h"
@@ -8,7 +9,9 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -52,6 +55,21 @@ int RunVerify(const std::string& path) {
   return 0;
 }
 
+int RunExport(const std::string& path, const belvedere::ExportOptions& options) {
+  const auto dataset = Dataset::Open(path);
+  if (!dataset.ok()) return Fail(dataset.message());
+  const auto report = belvedere::Export(**dataset, options, belvedere::Clock::System());
+  if (!report.ok()) return Fail(report.message());
+  fmt::print(stderr, "{}: {}\n", options.out, belvedere::ExportReportLine(*report));
+  return 0;
+}
+
+// West, south, east, north, as given.
+std::optional<belvedere::GeoBox> BoxOf(const std::vector<double>& degrees) {
+  if (degrees.size() != 4) return std::nullopt;
+  return belvedere::GeoBox{degrees[0], degrees[1], degrees[2], degrees[3]};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -72,10 +90,23 @@ int main(int argc, char** argv) {
   info->add_flag("--json", json, "print it as JSON");
   CLI::App* verify = app.add_subcommand("verify", "read and check every page of a dataset");
   verify->add_option("DATASET", dataset_path, "folder of the dataset")->required();
+  CLI::App* exporting = app.add_subcommand("export", "a layer as a GeoTIFF, or imagery as MBTiles");
+  belvedere::ExportOptions exported;
+  std::vector<double> extent;
+  bool no_fill = false;
+  exporting->add_option("DATASET", dataset_path, "folder of the dataset")->required();
+  exporting->add_option("--layer", exported.layer, "its name")->required();
+  exporting->add_option("--out", exported.out, "FILE.tif (cloud-optimised) or FILE.mbtiles")->required();
+  exporting->add_option("--extent", extent, "WEST SOUTH EAST NORTH in degrees (default: where the level has pages)")
+      ->expected(4);
+  exporting->add_option("--level", exported.level, "its level (default: the finest in the extent)")
+      ->check(CLI::Range(0, belvedere::kMaxLevel));
+  exporting->add_flag("--no-fill", no_fill,
+                      "leave empty what has no page of the level; else coarser ones are enlarged");
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);
-    const bool building = !info->parsed() && !verify->parsed();
+    const bool building = app.get_subcommands().empty();
     if (building && spec_path.empty()) throw CLI::RequiredError("SPEC");
     if (building && options.out.empty()) throw CLI::RequiredError("--out");
   } catch (const CLI::ParseError& problem) {
@@ -83,5 +114,10 @@ int main(int argc, char** argv) {
   }
   if (info->parsed()) return RunInfo(dataset_path, json);
   if (verify->parsed()) return RunVerify(dataset_path);
+  if (exporting->parsed()) {
+    exported.extent = BoxOf(extent);
+    if (no_fill) exported.enlarge = belvedere::Enlarge::kNothing;
+    return RunExport(dataset_path, exported);
+  }
   return RunBuild(spec_path, options, json);
 }
