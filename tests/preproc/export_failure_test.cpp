@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <optional>
 #include <random>
 
 namespace belvedere {
@@ -31,7 +32,9 @@ int ExitOf(const std::function<int()>& body) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-void ExpectFullDiskIsSaid(const std::string& layer, const std::string& name) {
+// No file may grow past kibibytes.
+void ExpectFullDiskIsSaid(const std::string& layer, const std::string& name, rlim_t kibibytes,
+                          std::optional<GeoBox> extent = std::nullopt) {
   const std::string folder = FreshFolder("export_full_" + layer + name);
   const std::string out = folder + "/" + name;
   ASSERT_EQ(ExitOf([&] {
@@ -47,14 +50,14 @@ void ExpectFullDiskIsSaid(const std::string& layer, const std::string& name) {
             0);
   std::ofstream(out) << "what was there";
   EXPECT_EQ(ExitOf([&] {
-              // No file may grow past 256 KiB: writing fails as it does where the disk ends.
+              // Writing fails as it does where the disk ends.
               std::signal(SIGXFSZ, SIG_IGN);
-              const rlimit limit{rlim_t{256} << 10, rlim_t{256} << 10};
+              const rlimit limit{kibibytes << 10, kibibytes << 10};
               if (setrlimit(RLIMIT_FSIZE, &limit) != 0) return 2;
               const auto dataset = Dataset::Open(folder + "/out");
               if (!dataset.ok()) return 3;
-              const auto report =
-                  Export(**dataset, {.layer = layer, .out = out, .show_progress = false}, Clock::System());
+              const auto report = Export(
+                  **dataset, {.layer = layer, .out = out, .extent = extent, .show_progress = false}, Clock::System());
               if (report.ok()) return 4;
               std::fprintf(stderr, "%s\n", report.message().c_str());
               return report.message().find("check the space on the disk") != std::string::npos ? 0 : 5;
@@ -65,13 +68,19 @@ void ExpectFullDiskIsSaid(const std::string& layer, const std::string& name) {
 }
 
 TEST(ExportFailure, AFullDiskIsSaidOfHeights) {
-  ExpectFullDiskIsSaid("elevation", "a.tif");
+  ExpectFullDiskIsSaid("elevation", "a.tif", 256);
 }
 TEST(ExportFailure, AFullDiskIsSaidOfImagery) {
-  ExpectFullDiskIsSaid("imagery", "a.tif");
+  ExpectFullDiskIsSaid("imagery", "a.tif", 256);
 }
 TEST(ExportFailure, AFullDiskIsSaidOfTiles) {
-  ExpectFullDiskIsSaid("imagery", "a.mbtiles");
+  ExpectFullDiskIsSaid("imagery", "a.mbtiles", 256);
+}
+// So small a file that nothing is written before it is closed.
+TEST(ExportFailure, AFullDiskIsSaidWhereOnlyClosingFindsIt) {
+  ExpectFullDiskIsSaid("imagery", "a.tif", 1, GeoBox{1, 1, 9, 9});
+  ExpectFullDiskIsSaid("elevation", "a.tif", 1, GeoBox{1, 1, 9, 9});
+  ExpectFullDiskIsSaid("imagery", "a.mbtiles", 16, GeoBox{1, 1, 9, 9});
 }
 
 }  // namespace

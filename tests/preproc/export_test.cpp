@@ -163,6 +163,30 @@ TEST(Export, HeightsAreThoseStoredAtEveryPostOver180EAndPageBorders) {
   EXPECT_GT(enlarged, 100);
 }
 
+TEST(Export, APostOnABorderIsTheFinerPagesWhereverAWindowBegins) {
+  const std::string folder = HeightsFolder();
+  const auto dataset = MustOpen(folder);
+  StoredPages<ElevationPage> pages(*dataset);
+  const auto fine = PlanExport(*dataset, 0, std::nullopt, std::nullopt);
+  ASSERT_TRUE(fine.ok());
+  LayerPixels pixels(*dataset, 0, fine->level, Enlarge::kCoarser);
+  const double spacing = fine->SpacingDegrees();
+  const int64_t east = fine->first_column + fine->width - 1, north = fine->first_row + fine->height - 1;
+  int fine_posts = 0;
+  for (const auto& [column, row] : {std::pair{east, fine->first_row}, std::pair{fine->first_column, north}}) {
+    std::vector<float> heights_m(200 * 200);
+    ASSERT_TRUE(pixels.ReadHeights({column, row, 200, 200}, heights_m).ok());
+    for (int i = 0; i < 200 * 200; ++i) {
+      const auto stored_mm = StoredPost_mm(pages, fine->level, static_cast<double>(column + i % 200) * spacing - 180,
+                                           static_cast<double>(row + i / 200) * spacing - 90);
+      if (!stored_mm) continue;
+      ASSERT_EQ(std::llround(1000.0 * static_cast<double>(heights_m[static_cast<size_t>(i)])), *stored_mm) << i;
+      ++fine_posts;
+    }
+  }
+  EXPECT_GE(fine_posts, 400);
+}
+
 TEST(Export, AHeightAtAKnownPlaceIsTheSources) {
   const std::string folder = FreshFolder("export_ramp");
   Write(folder + "/ramp.tif",
@@ -280,14 +304,16 @@ TEST(Export, ColoursAreTheTexelsStoredOver180E) {
   }
 }
 
-TEST(Export, CoarserImageryIsEnlargedWithoutStepsOrDarkRims) {
+TEST(Export, CoarserImageryIsEnlargedWithoutStepsOrShift) {
   const std::string folder = FreshFolder("export_enlarged");
-  Write(folder + "/world.tif", {.width = 360,
-                                .height = 180,
-                                .bands = 3,
-                                .type = GDT_Byte,
-                                .affine = Degrees(-180, 90, 1),
-                                .value = [](int band, int column, int) { return band == 1 ? column / 2.0 : 90.0; }});
+  // Red rises by 25 a degree, ten degrees long.
+  Write(folder + "/world.tif",
+        {.width = 360,
+         .height = 180,
+         .bands = 3,
+         .type = GDT_Byte,
+         .affine = Degrees(-180, 90, 1),
+         .value = [](int band, int column, int) { return band == 1 ? column % 10 * 25.0 : 90.0; }});
   Write(folder + "/fine.tif", {.width = 20,
                                .height = 20,
                                .bands = 3,
@@ -297,21 +323,47 @@ TEST(Export, CoarserImageryIsEnlargedWithoutStepsOrDarkRims) {
   MustBuild(folder, Layer("imagery", {"path = \"world.tif\"", "path = \"fine.tif\""}));
   const auto dataset = MustOpen(folder);
   ASSERT_GE(dataset->MaxLevel(0), 4);
-  MustExport(*dataset, {.layer = "imagery", .out = folder + "/filled.tif", .extent = GeoBox{4, 7, 14, 9}});
-  MustExport(
-      *dataset,
-      {.layer = "imagery", .out = folder + "/bare.tif", .extent = GeoBox{4, 7, 14, 9}, .enlarge = Enlarge::kNothing});
+  const GeoBox extent{4, 7, 14, 9};
+  MustExport(*dataset, {.layer = "imagery", .out = folder + "/filled.tif", .extent = extent});
+  MustExport(*dataset,
+             {.layer = "imagery", .out = folder + "/bare.tif", .extent = extent, .enlarge = Enlarge::kNothing});
   const ReadBack filled = Read(folder + "/filled.tif"), bare = Read(folder + "/bare.tif");
   int enlarged = 0;
   for (int column = 0; column < filled.width; ++column) {
     ASSERT_EQ(filled.at(3, column, 0), 255);
-    const double longitude = filled.longitude(column);
-    if (bare.at(3, column, 0) == 0) ++enlarged;
-    if (longitude < 6) continue;
-    ASSERT_NEAR(filled.at(0, column, 0), (longitude + 180 - 0.5) / 2, 1.5) << longitude;
+    if (bare.at(3, column, 0) != 0) continue;
+    const double in_ten = std::fmod(filled.longitude(column) + 180, 10);
+    if (in_ten < 2 || in_ten > 8) continue;
+    ASSERT_NEAR(filled.at(0, column, 0), (in_ten - 0.5) * 25, 1.6) << filled.longitude(column);
     ASSERT_EQ(filled.at(1, column, 0), 90);
+    ++enlarged;
   }
-  EXPECT_GT(enlarged, 100);
+  EXPECT_GT(enlarged, 50);
+}
+
+// Half of a coarse page is red, half is transparent.
+TEST(Export, WhatIsTransparentDarkensNothingThatIsEnlarged) {
+  const std::string folder = FreshFolder("export_rim");
+  auto writer = DatasetWriter::Create(folder + "/out");
+  ASSERT_TRUE(writer.ok());
+  std::vector<uint8_t> half(4 * kImageTexels, 0);
+  for (size_t i = 0; i < kImageTexels; i += 2) half[4 * i] = half[4 * i + 3] = 255;
+  for (int tree = 0; tree < kTrees; ++tree)
+    ASSERT_TRUE((*writer)->Put(0, Quadcode::Root(tree), EncodeImage(half)).ok());
+  for (int which = 0; which < 4; ++which)
+    ASSERT_TRUE((*writer)->Put(0, Quadcode::Root(0).Child(which), EncodeImage(half)).ok());
+  LayerRecord record;
+  record.name = "imagery";
+  record.kind = LayerKind::kImagery;
+  ASSERT_TRUE((*writer)->Finish({record}, "").ok());
+  const auto dataset = MustOpen(folder);
+  LayerPixels pixels(*dataset, 0, 1, Enlarge::kCoarser);
+  std::vector<uint8_t> row(4 * 100);
+  ASSERT_TRUE(pixels.ReadColours({2 * kImageInner + 10, 50, 100, 1}, row).ok());
+  for (size_t i = 0; i < 100; ++i) {
+    EXPECT_EQ(row[4 * i], 255) << i;
+    EXPECT_TRUE(row[4 * i + 3] == 64 || row[4 * i + 3] == 191) << int{row[4 * i + 3]};
+  }
 }
 
 TEST(Export, TilesShowTheColoursAtTheirPlacesFromZoom0On) {
