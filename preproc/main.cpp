@@ -3,12 +3,14 @@
 #include "preproc/build.h"
 #include "preproc/export.h"
 #include "preproc/report.h"
+#include "preproc/report_page.h"
 #include "preproc/spec.h"
 #include "runtime/base/clock.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,16 +19,35 @@ namespace {
 
 using belvedere::Dataset;
 
+// Where the page that reports a build goes: into the dataset's folder unless a path is given.
+struct PageOptions {
+  std::string path;
+  bool none = false;
+};
+
 int Fail(const std::string& message) {
   fmt::print(stderr, "belvedere-build: {}\n", message);
   return 1;
 }
 
-int RunBuild(const std::string& spec_path, const belvedere::BuildOptions& options, bool json) {
+// The page that a build before left there says nothing of this one.
+belvedere::Status WritePage(const belvedere::BuildReport& report, const std::string& out, const PageOptions& page) {
+  const std::string own = belvedere::ReportPathIn(out);
+  std::error_code error;
+  std::filesystem::remove(own, error);
+  if (page.none) return {};
+  const auto dataset = Dataset::Open(out);
+  if (!dataset.ok()) return dataset.status();
+  return belvedere::WriteReportPage(**dataset, report, page.path.empty() ? own : page.path);
+}
+
+int RunBuild(const std::string& spec_path, const belvedere::BuildOptions& options, const PageOptions& page, bool json) {
   const auto spec = belvedere::LoadSpec(spec_path);
   if (!spec.ok()) return Fail(spec.message());
   const auto report = belvedere::Build(*spec, options, belvedere::Clock::System());
   if (!report.ok()) return Fail(report.message());
+  if (const belvedere::Status status = WritePage(*report, options.out, page); !status.ok())
+    return Fail(fmt::format("the dataset {} is built, but not its report: {}", options.out, status.message()));
   fmt::print(stderr, "{}: {}\n", options.out, belvedere::BuildReportLine(*report));
   if (json) fmt::print("{}\n", belvedere::BuildReportJson(*report));
   return 0;
@@ -84,6 +105,10 @@ int main(int argc, char** argv) {
   app.add_option("SPEC", spec_path, "what to build: a TOML file of layers and their sources");
   app.add_option("--out", options.out, "folder of the dataset; one that is there is replaced when the build succeeds");
   app.add_option("--jobs", options.jobs, "workers (default: one for each core)")->check(CLI::Range(1, 1024));
+  PageOptions page;
+  CLI::Option* report = app.add_option(
+      "--report", page.path, "where to write a page that shows what was built (default: DATASET/report.html)");
+  app.add_flag("--no-report", page.none, "write none")->excludes(report);
   app.add_flag("--json", json, "print a report as JSON");
   CLI::App* info = app.add_subcommand("info", "layers, levels, extents, pages, bytes and sources of a dataset");
   info->add_option("DATASET", dataset_path, "folder of the dataset")->required();
@@ -119,5 +144,5 @@ int main(int argc, char** argv) {
     if (no_fill) exported.enlarge = belvedere::Enlarge::kNothing;
     return RunExport(dataset_path, exported);
   }
-  return RunBuild(spec_path, options, json);
+  return RunBuild(spec_path, options, page, json);
 }
