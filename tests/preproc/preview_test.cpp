@@ -9,6 +9,7 @@
 #include <cpl_vsi.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
@@ -68,6 +69,21 @@ TEST(Preview, HeightsAreTintedAboveTheSeaAndShadedFromTheNorthWest) {
   EXPECT_GT(sea[2], sea[0] + 50) << "blue";
   EXPECT_GT(west[0], west[2]) << "land is not";
   EXPECT_GT(west[0], east[0] + 10) << "the west slope is in the light";
+}
+
+// South of India the geoid lies 100 m under the ellipsoid, and what is dry is still no sea.
+TEST(Preview, LandIsWhatIsAboveTheSeaNotTheEllipsoid) {
+  const std::string folder = FreshFolder("preview_sea");
+  Write(folder + "/low.tif",
+        {.width = 36, .height = 18, .affine = Degrees(-180, 90, 10), .value = [](int, int, int) { return 5.0; }});
+  MustBuild(folder, Layer("elevation", {"path = \"low.tif\""}));
+  const auto preview = PreviewOf(*MustOpen(folder), 0, {70, -5, 90, 15}, 100, Egm96());
+  ASSERT_TRUE(preview.ok()) << preview.message();
+  const Picture& picture = preview->picture;
+  for (int row = 0; row < picture.height; ++row) {
+    for (int column = 0; column < picture.width; ++column)
+      ASSERT_GT(picture.At(column, row)[0], picture.At(column, row)[2]) << column << " " << row;
+  }
 }
 
 TEST(Preview, WhereItIsFinestIsShownFromPagesFineEnough) {
@@ -154,6 +170,12 @@ TEST(HeightHistogram, CountsThePostsOfTheFinestPages) {
   const auto all = CountHeights(*dataset, 0, 1 << 20, 10);
   ASSERT_TRUE(all.ok()) << all.message();
   EXPECT_EQ(all->pages_read, all->pages);
+  const auto nodes = dataset->Nodes(0);
+  EXPECT_EQ(all->pages, std::count_if(nodes.begin(), nodes.end(), [&](uint64_t word) {
+              const Quadcode node = *Quadcode::FromWord(word);
+              return dataset->FinestContaining(0, node.Box().south_deg, node.Box().west_deg) == node;
+            }));
+  EXPECT_LT(all->pages, static_cast<int64_t>(nodes.size()));
   EXPECT_EQ(all->step_m, 100);
   EXPECT_NEAR(all->lowest_m, 100, 0.1);
   EXPECT_NEAR(all->highest_m, 900, 0.1);

@@ -1,5 +1,6 @@
 #include "preproc/report_page.h"
 
+#include "preproc/markup.h"
 #include "tests/preproc/made_raster.h"
 
 #include <gtest/gtest.h>
@@ -7,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <numeric>
 #include <regex>
 
 namespace belvedere {
@@ -83,13 +85,24 @@ TEST(ReportPage, IsWholeInItself) {
 TEST(ReportPage, BytesOfLevelsAddUpToTheLayers) {
   const std::string folder = FreshFolder("page_bytes");
   const Built built = BuildAll(folder);
+  const auto page = ReportPage(*built.dataset, built.report);
+  ASSERT_TRUE(page.ok()) << page.message();
   for (size_t layer = 0; layer < built.dataset->layers().size(); ++layer) {
     const auto number = static_cast<int>(layer);
-    int64_t bytes = 0;
-    for (const uint64_t word : built.dataset->Nodes(number))
-      bytes += built.dataset->StoredBytes(number, *Quadcode::FromWord(word));
-    EXPECT_EQ(bytes, built.dataset->layers()[layer].bytes);
+    std::vector<int64_t> bytes(1 + static_cast<size_t>(built.dataset->MaxLevel(number)));
+    for (const uint64_t word : built.dataset->Nodes(number)) {
+      const Quadcode node = *Quadcode::FromWord(word);
+      bytes[static_cast<size_t>(node.level())] += built.dataset->StoredBytes(number, node);
+    }
+    const LayerRecord& record = built.dataset->layers()[layer];
+    EXPECT_EQ(std::accumulate(bytes.begin(), bytes.end(), int64_t{0}), record.bytes);
+    if (record.step) continue;  // the page counts all steps together
+    for (size_t level = 0; level < bytes.size(); ++level) {
+      ExpectHas(*page, fmt::format("<td class=\"n\">{}</td><td class=\"n\">{}</td>",
+                                   markup::Count(record.pages_per_level[level]), markup::Bytes(bytes[level])));
+    }
   }
+  EXPECT_EQ(built.dataset->StoredBytes(0, Quadcode::Containing(0, 0, kMaxLevel)), 0) << "no such page";
 }
 
 TEST(ReportPage, ManySourcesAndRemarksAreCountedNotListed) {
