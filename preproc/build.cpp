@@ -129,6 +129,7 @@ class Builder {
 
   Result<BuildReport> Run() {
     const double start_s = clock_.NowSeconds();
+    report_.jobs = jobs_;
     GDALAllRegister();
     CPLSetErrorHandler(CPLQuietErrorHandler);
     GDALSetCacheMax64(kGdalCacheBytes);
@@ -137,15 +138,22 @@ class Builder {
     // Each round without what the one before found to be useless; so at most one more than there are sources.
     for (;;) {
       layers_.clear();
-      const size_t left_out = excluded_.size();
+      ++report_.rounds;
+      const double round_s = clock_.NowSeconds();
       BlockCache cache(options_.cache_bytes);
       if (Status status = OpenSources(cache); !status.ok()) return status;
+      const size_t left_out = excluded_.size();  // what could not be opened is in no page
+      const double opened_s = clock_.NowSeconds();
       auto writer = DatasetWriter::Create(options_.out);
       if (!writer.ok()) return writer.status();
       if (Status status = MakePages(**geoid, **writer); !status.ok()) return status;
       ExcludeUseless();
+      const double made_s = clock_.NowSeconds();
+      report_.opening_s += opened_s - round_s;
+      report_.pages_s += made_s - opened_s;
       if (excluded_.size() > left_out) continue;
       if (Status status = Finish(**geoid, **writer); !status.ok()) return status;
+      report_.finishing_s = clock_.NowSeconds() - made_s;
       report_.seconds = clock_.NowSeconds() - start_s;
       layers_.clear();  // before the cache goes
       return std::move(report_);

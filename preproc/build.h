@@ -33,6 +33,9 @@ struct BuildOptions {
 
 struct BuildReport {
   double seconds = 0;
+  double opening_s = 0, pages_s = 0, finishing_s = 0;  // of it; the first two of all rounds
+  int rounds = 0;  // more than one where pages were made with sources that then had to be left out
+  int jobs = 0;
   int64_t pages = 0;
   int64_t bytes = 0;       // of the store on disk
   int64_t bytes_read = 0;  // of source pixels, unpacked

@@ -1,29 +1,53 @@
-// belvedere-build: sources to a dataset; what is in a dataset; whether it is whole.
+// belvedere-build: sources to a dataset; what is in a dataset; whether it is whole; and out of it again.
 
 #include "preproc/build.h"
+#include "preproc/export.h"
 #include "preproc/report.h"
+#include "preproc/report_page.h"
 #include "preproc/spec.h"
 #include "runtime/base/clock.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace {
 
 using belvedere::Dataset;
+
+// Where the page that reports a build goes: into the dataset's folder unless a path is given.
+struct PageOptions {
+  std::string path;
+  bool none = false;
+};
 
 int Fail(const std::string& message) {
   fmt::print(stderr, "belvedere-build: {}\n", message);
   return 1;
 }
 
-int RunBuild(const std::string& spec_path, const belvedere::BuildOptions& options, bool json) {
+// The page that a build before left there says nothing of this one.
+belvedere::Status WritePage(const belvedere::BuildReport& report, const std::string& out, const PageOptions& page) {
+  const std::string own = belvedere::ReportPathIn(out);
+  std::error_code error;
+  std::filesystem::remove(own, error);
+  if (page.none) return {};
+  const auto dataset = Dataset::Open(out);
+  if (!dataset.ok()) return dataset.status();
+  return belvedere::WriteReportPage(**dataset, report, page.path.empty() ? own : page.path);
+}
+
+int RunBuild(const std::string& spec_path, const belvedere::BuildOptions& options, const PageOptions& page, bool json) {
   const auto spec = belvedere::LoadSpec(spec_path);
   if (!spec.ok()) return Fail(spec.message());
   const auto report = belvedere::Build(*spec, options, belvedere::Clock::System());
   if (!report.ok()) return Fail(report.message());
+  if (const belvedere::Status status = WritePage(*report, options.out, page); !status.ok())
+    return Fail(fmt::format("the dataset {} is built, but not its report: {}", options.out, status.message()));
   fmt::print(stderr, "{}: {}\n", options.out, belvedere::BuildReportLine(*report));
   if (json) fmt::print("{}\n", belvedere::BuildReportJson(*report));
   return 0;
@@ -52,6 +76,21 @@ int RunVerify(const std::string& path) {
   return 0;
 }
 
+int RunExport(const std::string& path, const belvedere::ExportOptions& options) {
+  const auto dataset = Dataset::Open(path);
+  if (!dataset.ok()) return Fail(dataset.message());
+  const auto report = belvedere::Export(**dataset, options, belvedere::Clock::System());
+  if (!report.ok()) return Fail(report.message());
+  fmt::print(stderr, "{}: {}\n", options.out, belvedere::ExportReportLine(*report));
+  return 0;
+}
+
+// West, south, east, north, as given.
+std::optional<belvedere::GeoBox> BoxOf(const std::vector<double>& degrees) {
+  if (degrees.size() != 4) return std::nullopt;
+  return belvedere::GeoBox{degrees[0], degrees[1], degrees[2], degrees[3]};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -66,16 +105,33 @@ int main(int argc, char** argv) {
   app.add_option("SPEC", spec_path, "what to build: a TOML file of layers and their sources");
   app.add_option("--out", options.out, "folder of the dataset; one that is there is replaced when the build succeeds");
   app.add_option("--jobs", options.jobs, "workers (default: one for each core)")->check(CLI::Range(1, 1024));
+  PageOptions page;
+  CLI::Option* report = app.add_option(
+      "--report", page.path, "where to write a page that shows what was built (default: DATASET/report.html)");
+  app.add_flag("--no-report", page.none, "write none")->excludes(report);
   app.add_flag("--json", json, "print a report as JSON");
   CLI::App* info = app.add_subcommand("info", "layers, levels, extents, pages, bytes and sources of a dataset");
   info->add_option("DATASET", dataset_path, "folder of the dataset")->required();
   info->add_flag("--json", json, "print it as JSON");
   CLI::App* verify = app.add_subcommand("verify", "read and check every page of a dataset");
   verify->add_option("DATASET", dataset_path, "folder of the dataset")->required();
+  CLI::App* exporting = app.add_subcommand("export", "a layer as a GeoTIFF, or imagery as MBTiles");
+  belvedere::ExportOptions exported;
+  std::vector<double> extent;
+  bool no_fill = false;
+  exporting->add_option("DATASET", dataset_path, "folder of the dataset")->required();
+  exporting->add_option("--layer", exported.layer, "its name")->required();
+  exporting->add_option("--out", exported.out, "FILE.tif (cloud-optimised) or FILE.mbtiles")->required();
+  exporting->add_option("--extent", extent, "WEST SOUTH EAST NORTH in degrees (default: where the level has pages)")
+      ->expected(4);
+  exporting->add_option("--level", exported.level, "its level (default: the finest in the extent)")
+      ->check(CLI::Range(0, belvedere::kMaxLevel));
+  exporting->add_flag("--no-fill", no_fill,
+                      "leave empty what has no page of the level; else coarser ones are enlarged");
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);
-    const bool building = !info->parsed() && !verify->parsed();
+    const bool building = app.get_subcommands().empty();
     if (building && spec_path.empty()) throw CLI::RequiredError("SPEC");
     if (building && options.out.empty()) throw CLI::RequiredError("--out");
   } catch (const CLI::ParseError& problem) {
@@ -83,5 +139,10 @@ int main(int argc, char** argv) {
   }
   if (info->parsed()) return RunInfo(dataset_path, json);
   if (verify->parsed()) return RunVerify(dataset_path);
-  return RunBuild(spec_path, options, json);
+  if (exporting->parsed()) {
+    exported.extent = BoxOf(extent);
+    if (no_fill) exported.enlarge = belvedere::Enlarge::kNothing;
+    return RunExport(dataset_path, exported);
+  }
+  return RunBuild(spec_path, options, page, json);
 }

@@ -5,10 +5,22 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
 namespace belvedere {
+namespace {
+
+// "0:22", "1:02:03"
+std::string TimeText(double seconds) {
+  const auto whole = static_cast<int64_t>(std::ceil(seconds));
+  const int64_t minutes = whole / 60;
+  return minutes < 60 ? fmt::format("{}:{:02}", minutes, whole % 60)
+                      : fmt::format("{}:{:02}:{:02}", minutes / 60, minutes % 60, whole % 60);
+}
+
+}  // namespace
 
 Progress::Progress(int64_t planned, const Clock& clock, std::function<Written()> written)
     : planned_(std::max<int64_t>(planned, 1)),
@@ -43,15 +55,18 @@ void Progress::Run() {
   if (terminal) std::fputs("\r\033[K", stderr);
 }
 
+std::string Progress::Line(int64_t done, int64_t planned, double elapsed_s, const Written& written) {
+  elapsed_s = std::max(elapsed_s, 1e-3);
+  const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(planned));
+  return fmt::format("{:.0f} %, {} pages, {:.0f} pages/s, {:.1f} MB/s, {}", std::floor(100 * share), written.pages,
+                     static_cast<double>(written.pages) / elapsed_s,
+                     static_cast<double>(written.bytes) / 1e6 / elapsed_s,
+                     done > 0 ? TimeText(elapsed_s * (1 - share) / share) + " left" : "time left not known yet");
+}
+
 void Progress::Print(bool terminal) const {
-  const double elapsed_s = std::max(clock_.NowSeconds() - start_s_, 1e-3);
-  const int64_t done = done_.load(std::memory_order_relaxed);
-  const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(planned_));
-  const int left_s = done > 0 ? static_cast<int>(elapsed_s * (1.0 - share) / share) : 0;
-  const Written written = written_();
-  const std::string line = fmt::format("{:.0f} %, {} pages, {:.0f} pages/s, {:.1f} MB/s, {}:{:02} left", 100 * share,
-                                       written.pages, static_cast<double>(written.pages) / elapsed_s,
-                                       static_cast<double>(written.bytes) / 1e6 / elapsed_s, left_s / 60, left_s % 60);
+  const std::string line =
+      Line(done_.load(std::memory_order_relaxed), planned_, clock_.NowSeconds() - start_s_, written_());
   fmt::print(stderr, "{}{}{}", terminal ? "\r\033[K" : "", line, terminal ? "" : "\n");
   std::fflush(stderr);
 }

@@ -1,4 +1,4 @@
-// Progress: how far a build is, its rate and the time left, on standard error.
+// Progress: how far a build or an export is, its rate and the time left, on standard error.
 //
 // On a terminal one line that is written over, elsewhere a line every few seconds.
 //
@@ -11,6 +11,7 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <string>
 #include <thread>
 
 namespace belvedere {
@@ -20,9 +21,12 @@ class Progress {
   struct Written {
     int64_t pages = 0, bytes = 0;
   };
-  // planned: steps until the build is done, Done counts them. written: what has reached the dataset so far.
+  // planned: steps until all is done, Done counts them. written: what has reached the dataset, or the file, so far.
   Progress(int64_t planned, const Clock& clock, std::function<Written()> written);
   ~Progress();
+  // "12 %, 1371 pages, 455 pages/s, 10.9 MB/s, 0:22 left": the rates so far, and the time left if the steps go on so.
+  // REQUIRES: planned > 0
+  static std::string Line(int64_t done, int64_t planned, double elapsed_s, const Written& written);
   void Done() { done_.fetch_add(1, std::memory_order_relaxed); }
 
  private:

@@ -84,6 +84,11 @@ class LmdbDataset final : public Dataset {
     if (!value) return std::nullopt;
     return std::vector<uint8_t>(value->begin(), value->end());
   }
+  int64_t StoredBytes(int layer, Quadcode node) const override {
+    const ReadTransaction txn(env_);
+    const auto value = Find(txn, layer, node);
+    return value ? static_cast<int64_t>(value->size()) : 0;
+  }
 
  private:
   int OpenStore() {

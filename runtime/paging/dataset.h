@@ -86,6 +86,8 @@ class Dataset {
 
   // Stored bytes of a page, as ReadElevation decodes them; nullopt when it is not there.
   virtual std::optional<std::vector<uint8_t>> ReadRaw(int layer, Quadcode node) const = 0;
+  // How many there are, without reading them; 0 when it is not there.
+  virtual int64_t StoredBytes(int layer, Quadcode node) const = 0;
 };
 
 // Height in metres of a page at a position inside its quadnode, bilinear between posts.

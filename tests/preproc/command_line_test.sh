@@ -1,0 +1,85 @@
+#!/bin/sh
+# belvedere-build keeps its promises to scripts: exit codes, where output goes, which files are left.
+# usage: command_line_test.sh PROGRAM
+program=$1
+folder=$(mktemp -d) || exit 1
+trap 'rm -rf "$folder"' EXIT
+cd "$folder" || exit 1
+failures=0
+
+fail() {
+  echo "$1"
+  failures=$((failures + 1))
+}
+
+# expect CODE ARGUMENT...: runs the program, checks its exit code; leaves its output in out and err
+expect() {
+  wanted=$1
+  shift
+  "$program" "$@" >"$folder/out" 2>"$folder/err"
+  code=$?
+  [ $code -eq "$wanted" ] || fail "belvedere-build $*: exit code $code, not $wanted: $(cat "$folder/err")"
+}
+
+# one_line: the last command said one line on standard error and nothing on standard output
+one_line() {
+  if [ -s "$folder/out" ] || [ "$(wc -l <"$folder/err")" -ne 1 ]; then
+    fail "not one line on standard error alone: $(cat "$folder/out" "$folder/err")"
+  fi
+}
+
+# A north-up picture of 8 x 4 pixels over the whole Earth.
+printf 'P5\n8 4\n255\n%032d' 0 >grey.pgm
+cat >spec.toml <<TEXT
+[[layer]]
+name = "elevation"
+kind = "elevation"
+  [[layer.source]]
+  path = "grey.pgm"
+  georeference = [-180, -90, 180, 90]
+[[layer]]
+name = "imagery"
+kind = "imagery"
+  [[layer.source]]
+  path = "grey.pgm"
+  georeference = [-180, -90, 180, 90]
+TEXT
+
+expect 0 --help
+expect 2
+expect 2 spec.toml
+expect 2 spec.toml --out dataset --report a.html --no-report
+[ -e dataset ] && fail "a wrong command line built something"
+
+expect 0 spec.toml --out dataset
+one_line
+grep -q '</html>' dataset/report.html || fail "a build leaves no report in the dataset"
+expect 0 spec.toml --out dataset --report elsewhere.html
+grep -q '</html>' elsewhere.html || fail "--report writes none"
+[ -e dataset/report.html ] && fail "the report of an earlier build is left in the dataset"
+expect 0 spec.toml --out dataset
+expect 0 spec.toml --out dataset --no-report
+[ -e dataset/report.html ] && fail "--no-report leaves the report of an earlier build"
+expect 1 spec.toml --out dataset --report missing/report.html
+grep -q 'is built, but not its report' "$folder/err" || fail "a report that cannot be written: $(cat "$folder/err")"
+expect 0 verify dataset
+
+expect 2 export dataset --layer imagery
+expect 2 export dataset --layer imagery --out a.tif --level 23
+expect 2 export dataset --layer imagery --out a.tif --extent 1 2 3
+expect 1 export dataset --layer roads --out a.tif
+one_line
+expect 1 export missing --layer imagery --out a.tif
+one_line
+expect 1 export dataset --layer elevation --out a.mbtiles
+one_line
+expect 0 export dataset --layer elevation --out a.tif --extent -10 -10 10 10 --level 0
+one_line
+[ -s a.tif ] || fail "no GeoTIFF"
+expect 0 export dataset --layer elevation --out a.tif --extent -10 -10 10 10 --no-fill
+expect 0 export dataset --layer imagery --out a.mbtiles --extent -10 -10 10 10
+[ -s a.mbtiles ] || fail "no tiles"
+
+left=$(find . -name '*.partial' | wc -l)
+[ "$left" -eq 0 ] || fail "$left partial files are left"
+exit $((failures > 0))
