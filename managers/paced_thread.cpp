@@ -15,7 +15,7 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-constexpr int kCoresForOthers = 2;  // drawing and page servers
+constexpr double kCoresForOthers = 2;  // drawing and page servers
 std::atomic<int> living_threads{0};
 
 // What the thread has had of a core, so that a step that others kept waiting is not taken for a long one.
@@ -28,7 +28,9 @@ double CpuSeconds() {
 }  // namespace
 
 double ShareOfCore(int cores, int threads) {
-  return std::clamp(static_cast<double>(cores - kCoresForOthers) / std::max(threads, 1), 0.5, 1.0);
+  // They come in pairs, a terrain and an object manager for each view, and the second has little to do.
+  const double pairs = std::max(threads, 1) / 2.0;
+  return std::clamp(std::max(cores - kCoresForOthers, cores / 2.0) / pairs, 0.5, 1.0);
 }
 
 PacedThread::PacedThread(const char* name, double most_per_second, std::function<void()> step)

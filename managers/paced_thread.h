@@ -1,6 +1,6 @@
 // PacedThread: runs a step again and again on a thread of its own, at most so many times a second, until destroyed. All
-// such threads together leave two of the machine's cores to others; where that is less than half a core for each, or
-// there are no more than two, each takes half of one at most.
+// such threads together leave two of the machine's cores to others, or half of them where there are fewer than four; but
+// each may take half of a core.
 //
 // Threads: constructed and destroyed by one thread; destroying waits for the step that is running, and for no pause.
 #pragma once

@@ -23,13 +23,14 @@ TEST(PacedThread, EndsWithoutWaitingForItsPause) {
   SUCCEED();
 }
 
-TEST(PacedThread, LeavesTwoCoresToOthersAndTakesHalfOfOneAtLeast) {
+TEST(PacedThread, LeavesCoresToOthersAndTakesHalfOfOneAtLeast) {
   EXPECT_EQ(ShareOfCore(1, 2), 0.5);
-  EXPECT_EQ(ShareOfCore(2, 2), 0.5);
+  EXPECT_EQ(ShareOfCore(2, 2), 1.0) << "one view on two cores";
+  EXPECT_EQ(ShareOfCore(2, 4), 0.5);
   EXPECT_EQ(ShareOfCore(4, 2), 1.0);
-  EXPECT_EQ(ShareOfCore(8, 8), 0.75);
+  EXPECT_EQ(ShareOfCore(8, 16), 0.75);
   EXPECT_EQ(ShareOfCore(8, 32), 0.5);
-  EXPECT_EQ(ShareOfCore(16, 2), 1.0);
+  EXPECT_EQ(ShareOfCore(16, 8), 1.0);
 }
 
 }  // namespace
