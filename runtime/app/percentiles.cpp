@@ -38,4 +38,21 @@ double MeanOf(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
+std::vector<double> OverMedianAround(std::span<const double> times_s, std::span<const double> values, double reach_s) {
+  std::vector<double> over;
+  over.reserve(values.size());
+  std::vector<double> around;
+  size_t first = 0, last = 0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    while (times_s[first] < times_s[i] - reach_s) ++first;
+    while (last < values.size() && times_s[last] <= times_s[i] + reach_s) ++last;
+    around.assign(values.begin() + static_cast<std::ptrdiff_t>(first),
+                  values.begin() + static_cast<std::ptrdiff_t>(last));
+    const auto middle = around.begin() + static_cast<std::ptrdiff_t>((around.size() - 1) / 2);
+    std::nth_element(around.begin(), middle, around.end());
+    over.push_back(*middle > 0 ? values[i] / *middle : 1);
+  }
+  return over;
+}
+
 }  // namespace belvedere

@@ -23,6 +23,8 @@ struct Frame {
   bool behind = false;
 };
 
+constexpr double kAround_s = 1;  // frames so near are of like pictures
+
 double Rounded(double value) {
   return std::round(value * 1000) / 1000;
 }
@@ -72,14 +74,17 @@ void AddFrames(const TourReport& report, Json& json) {
   const std::vector<Frame> frames = FramesOf(report.samples);
   const auto frame_ms = Series(frames, [](const Frame& frame) { return frame.frame_ms; });
   const double start_s = frames.empty() ? 0 : frames.front().time_s;
-  std::vector<double> later_ms;
+  std::vector<double> later_s, later_ms;
   for (const Frame& frame : frames) {
-    if (frame.time_s - start_s > 1.0) later_ms.push_back(frame.frame_ms);
+    if (frame.time_s - start_s <= 1.0) continue;
+    later_s.push_back(frame.time_s);
+    later_ms.push_back(frame.frame_ms);
   }
   json["frames"] = frames.size();
   json["fps_mean"] = Rounded(report.seconds > 0 ? static_cast<double>(frames.size()) / report.seconds : 0);
   json["frame_ms"] = PercentilesJson(frame_ms);
   json["frame_ms_after_first_second"] = PercentilesJson(later_ms);
+  json["frame_over_median_around"] = PercentilesJson(OverMedianAround(later_s, later_ms, kAround_s));
   json["draw_ms"] = PercentilesJson(Series(frames, [](const Frame& frame) { return frame.work_ms; }));
   Json scene_hz = Json::array();
   for (const double hz : report.scene_hz) scene_hz.push_back(Rounded(hz));

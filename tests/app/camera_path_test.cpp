@@ -103,5 +103,24 @@ TEST(PercentilesTest, AreByNearestRank) {
   EXPECT_EQ(PercentilesOf({}).max, 0);
 }
 
+TEST(PercentilesTest, AValueIsHeldAgainstThoseAroundIt) {
+  // Two phases, 1 and 10, with one value of 5 in the first: nothing beside the second, five times its like.
+  std::vector<double> times_s, values;
+  for (int i = 0; i < 100; ++i) {
+    times_s.push_back(i);
+    values.push_back(i < 50 ? 1 : 10);
+  }
+  values[20] = 5;
+  const std::vector<double> over = OverMedianAround(times_s, values, 3);
+  ASSERT_EQ(over.size(), values.size());
+  EXPECT_EQ(over[20], 5);
+  EXPECT_EQ(over[0], 1);
+  EXPECT_EQ(over[49], 1) << "four of the seven around it are of the first phase";
+  EXPECT_EQ(over[50], 1);
+  EXPECT_EQ(over[99], 1);
+  EXPECT_EQ(std::count(over.begin(), over.end(), 1), 99);
+  EXPECT_TRUE(OverMedianAround({}, {}, 3).empty());
+}
+
 }  // namespace
 }  // namespace belvedere
