@@ -43,19 +43,16 @@ class Drawing : public OnStage {
     pins.push_back(std::move(pin));
     stage_->Upload(std::move(pins));
   }
-  void Publish(const ViewParameters& view, int step) {
+  void Fill(const ViewParameters& view, int step) {
     stage_->channel->parameters.Publish(view);
     DisplayList& list = stage_->channel->terrain_lists.back();
     list.Clear();
     AddSurface(list, scene_, nodes_, step);
-    list.number = ++number_;
     list.statistics.height_above_ground_m = 500;
-    stage_->channel->terrain_lists.Publish();
   }
   Picture Draw(const ViewParameters& view, int step = 8) {
-    Publish(view, step);
-    stage_->Frame();
-    for (int i = 0; i < 20 && stage_->channel->frame.Get()->terrain_list != number_; ++i) stage_->Frame();
+    Fill(view, step);
+    stage_->Show(++number_);
     return stage_->Take();
   }
 
@@ -279,7 +276,9 @@ TEST_F(Drawing, ALargeListComesInSharesWhileTheOneBeforeIsDrawn) {
   Load(Block(10, 10, 12, 4), Rugged);
   const ViewParameters view = LookAt({10, 10, 3000}, 0, -90, kWidth, kHeight);
   const Picture before = Draw(view, 32);
-  Publish(view, 1);
+  Fill(view, 1);
+  stage_->channel->terrain_lists.back().number = 2;
+  stage_->channel->terrain_lists.Publish();
   stage_->Frame();
   const Picture during = stage_->Take();
   EXPECT_EQ(during.terrain_list, before.terrain_list);

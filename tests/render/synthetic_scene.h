@@ -271,6 +271,13 @@ class Stage {
     BELVEDERE_CHECK(picture.ok());
     return std::move(*picture);
   }
+  // Publishes the terrain list that was filled and draws frames until it is shown.
+  void Show(uint64_t number) {
+    channel->terrain_lists.back().number = number;
+    channel->terrain_lists.Publish();
+    do Frame();
+    while (channel->frame.Get()->terrain_list != number);
+  }
   // Publishes a list that wishes for the pins and draws a frame, so that they are uploaded.
   void Upload(std::vector<PagePin> pins) {
     DisplayList& list = channel->terrain_lists.back();
