@@ -105,7 +105,7 @@ class LayerBuilder {
   bool NeedsRefinement(const ElevationPage& page, Quadcode node, int source_level) {
     if (node.level() >= std::min(source_level + kRefineLevels, kMaxLevel)) return false;
     const std::vector<double> probes = composites_.local()->ProbeHeights(node);
-    return ShareBeyond(page, probes, kRefineTolerance_m) > kRefineShare;
+    return ShareBeyond(page, probes, RefineTolerance_m(source_level)) > kRefineShare;
   }
 
   // Only pages that the plan counted.

@@ -12,13 +12,23 @@ namespace {
 // Heights of a datum are not to be trusted beyond what 32-bit millimetres hold.
 constexpr double kLargestHeight_m = 2.0e6;
 
-// Heights of coarse levels are rounded to a power of two of millimetres that tilts no triangle by more than 20
-// microradians: most of what a page would otherwise store is rounding noise. 64 mm at most, 1 from level 10 on.
-int32_t Quantum_mm(Quadcode node) {
+// Most of what a page would otherwise store is rounding noise (decision 0011): heights are rounded to a power of two of
+// millimetres. Either one that tilts no triangle by more than 20 microradians, which is 64 at level 3 and 1 from level
+// 10 on;
+int32_t QuantumOfLevel_mm(Quadcode node) {
   constexpr double kSteepest = 2e-5;
   constexpr int kCoarsest = 6;
   const double spacing_mm = node.SizeDegrees() / kCells * kRadiansPerDegree * kEquatorialRadius_m * 1000.0;
   return int32_t{1} << std::clamp(static_cast<int>(std::floor(std::log2(spacing_mm * kSteepest))), 0, kCoarsest);
+}
+
+// or a sixteenth of the step between the heights that a source can tell apart, where that is more.
+int32_t QuantumOfSource_mm(double precision_m) {
+  constexpr double kSteps = 16;
+  constexpr int kCoarsest = 10;
+  const double quantum_mm = precision_m * 1000.0 / kSteps;
+  if (quantum_mm < 1) return 1;
+  return int32_t{1} << std::min(static_cast<int>(std::floor(std::log2(quantum_mm))), kCoarsest);
 }
 
 int32_t Millimetres(double height_m, int32_t quantum_mm) {
@@ -76,42 +86,47 @@ bool Composite::MayCover(const SourceSampler& sampler, const LatticeRows& lattic
                      [&](double longitude_deg) { return Covers(box, longitude_deg, std::max(*south, box.south_deg)); });
 }
 
-std::vector<double> Composite::HeightsAt(const LatticeRows& lattice, double spacing_deg) {
+Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, double spacing_deg) {
   const size_t columns = lattice.longitudes_deg.size();
   const size_t count = columns * lattice.latitudes_deg.size();
   const std::vector<double> undulation = geoid_.Heights(lattice.latitudes_deg, lattice.longitudes_deg);
-  std::vector<double> heights(count, 0.0);
+  Heights heights{std::vector<double>(count, 0.0), std::vector<int32_t>(count, 0)};
   Remaining remaining(count);
   for (SourceSampler& sampler : samplers_) {
     if (!MayCover(sampler, lattice)) continue;
     const Samples<double> samples = sampler.Sample<double>(lattice, spacing_deg);
     const SourceSpec& spec = sampler.source().spec();
+    const int32_t quantum_mm = QuantumOfSource_mm(sampler.source().precision_m());
     bool used = false;
     for (size_t i = 0; i < count; ++i) {
       if (samples.weights[i] <= 0) continue;
       const double datum_m = spec.datum == VerticalDatum::kEgm96 ? undulation[i] : spec.datum_m;
       const float part = remaining.Take(i, samples.weights[i]);
-      if (part > 0) heights[i] += static_cast<double>(part) * (samples.values[i] + datum_m);
       used = true;
+      if (part <= 0) continue;
+      heights.metres[i] += static_cast<double>(part) * (samples.values[i] + datum_m);
+      int32_t& finest_mm = heights.quanta_mm[i];
+      finest_mm = finest_mm == 0 ? quantum_mm : std::min(finest_mm, quantum_mm);
     }
     if (used) sampler.source().SetUsed();
     if (!remaining.Any()) return heights;
   }
-  for (size_t i = 0; i < count; ++i) heights[i] += static_cast<double>(remaining.shares[i]) * undulation[i];
+  for (size_t i = 0; i < count; ++i) heights.metres[i] += static_cast<double>(remaining.shares[i]) * undulation[i];
   return heights;
 }
 
 std::vector<int32_t> Composite::Heights_mm(Quadcode node) {
   const double spacing_deg = node.SizeDegrees() / kCells;
-  const int32_t quantum_mm = Quantum_mm(node);
+  const int32_t quantum_mm = QuantumOfLevel_mm(node);
   std::vector<int32_t> heights_mm(static_cast<size_t>(kElevationSide) * static_cast<size_t>(kElevationSide));
   for (const LatticeRows& lattice : PostLattice(node)) {
-    const std::vector<double> heights = HeightsAt(lattice, spacing_deg);
+    const Heights heights = HeightsAt(lattice, spacing_deg);
     const size_t columns = lattice.longitudes_deg.size();
     for (size_t j = 0; j < lattice.rows.size(); ++j) {
       int32_t* out = &heights_mm[static_cast<size_t>(lattice.rows[j] * kElevationSide)];
       for (size_t i = 0; i < static_cast<size_t>(kElevationSide); ++i) {
-        out[i] = Millimetres(heights[j * columns + std::min(i, columns - 1)], quantum_mm);
+        const size_t from = j * columns + std::min(i, columns - 1);
+        out[i] = Millimetres(heights.metres[from], std::max(heights.quanta_mm[from], quantum_mm));
       }
     }
   }
@@ -119,7 +134,7 @@ std::vector<int32_t> Composite::Heights_mm(Quadcode node) {
 }
 
 std::vector<double> Composite::ProbeHeights(Quadcode node) {
-  return HeightsAt(ProbeLattice(node), node.SizeDegrees() / (2 * kCells));
+  return HeightsAt(ProbeLattice(node), node.SizeDegrees() / (2 * kCells)).metres;
 }
 
 std::vector<uint8_t> Composite::Texels(Quadcode node) {

@@ -29,7 +29,11 @@ class Composite {
   std::vector<double> ProbeHeights(Quadcode node);
 
  private:
-  std::vector<double> HeightsAt(const LatticeRows& lattice, double spacing_deg);
+  struct Heights {
+    std::vector<double> metres;
+    std::vector<int32_t> quanta_mm;  // what the sources of each are rounded to; 0 where there is none
+  };
+  Heights HeightsAt(const LatticeRows& lattice, double spacing_deg);
   bool MayCover(const SourceSampler& sampler, const LatticeRows& lattice) const;
 
   const LayerKind kind_;

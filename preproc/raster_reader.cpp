@@ -80,6 +80,7 @@ void RasterReader::InspectHeights() {
   const double unit = spec_.metres_per_unit ? *spec_.metres_per_unit : MetresPerUnit(band.GetUnitType());
   scale_ = band.GetScale() * unit;
   offset_ = band.GetOffset() * unit;
+  if (GDALDataTypeIsInteger(band.GetRasterDataType()) != 0) precision_m_ = std::abs(scale_);
 }
 
 Status RasterReader::InspectColours() {

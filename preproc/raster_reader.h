@@ -35,6 +35,8 @@ class RasterReader {
   int height() const { return height_; }
   std::optional<double> nodata() const { return nodata_; }
   const std::string& remark() const { return remark_; }
+  // Elevation: the step between two heights, where pixels are integers; 0 where they are not.
+  double precision_m() const { return precision_m_; }
   // Whether a whole row of blocks is best read at once.
   bool row_by_row() const { return row_by_row_; }
 
@@ -60,6 +62,7 @@ class RasterReader {
   int width_ = 0, height_ = 0;
   std::optional<double> nodata_;
   double scale_ = 1, offset_ = 0;  // heights: to metres; colours: to 0..255
+  double precision_m_ = 0;
   std::vector<int> colour_bands_;  // 1 (grey or palette) or 3
   int alpha_band_ = 0;             // 0: none
   bool has_mask_ = false;

@@ -121,6 +121,10 @@ SourceRecord RasterSource::Record() const {
   return record;
 }
 
+double RasterSource::precision_m() const {
+  return reader_->precision_m();
+}
+
 const std::string& RasterSource::remark() const {
   return reader_->remark();
 }

@@ -74,6 +74,8 @@ class RasterSource {
 
   // What could not be read, if anything: the source is then to be left out.
   Status failure() const EXCLUDES_LOCK(failure_mutex_);
+  // Elevation: the step between two heights, where pixels are integers; 0 where they are not.
+  double precision_m() const;
   // What was done to the pixels that the user may not expect; may be empty.
   const std::string& remark() const;
   // Whether any pixel is valid; reads the whole source.

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numeric>
 #include <random>
 
 namespace belvedere {
@@ -73,13 +74,14 @@ TEST(Build, SharedPostsAreTheSameBitsEverywhere) {
   // UTM, over the border of two trees (0 E is not one, 45 N is): 6 E to 12 E, about 45 N.
   Write(folder + "/utm.tif", {.width = 60,
                               .height = 60,
+                              .type = GDT_Int16,  // rounded otherwise than what lies around it
                               .affine = {400000, 10000, 0, 5300000, 0, -10000},
                               .epsg = 32632,
                               .value = [&](int, int, int) { return static_cast<double>(random() % 3000); }});
   // Over 180 E.
   Write(folder + "/seam.tif",
         {.width = 50, .height = 50, .affine = Degrees(179, -10, 0.04), .value = [&](int, int, int) {
-           return static_cast<double>(random() % 500);
+           return static_cast<double>(random() % 5000);
          }});
   const auto report =
       MustBuild(folder, Layer("elevation", {"path = \"world.tif\"", "path = \"utm.tif\"", "path = \"seam.tif\""}));
@@ -92,6 +94,39 @@ TEST(Build, SharedPostsAreTheSameBitsEverywhere) {
   const Verification verification = VerifyDataset(*dataset);
   EXPECT_EQ(verification.pages, report.pages);
   for (const auto& problem : verification.problems) ADD_FAILURE() << problem;
+}
+
+TEST(Build, HeightsAreRoundedToASixteenthOfWhatTheSourceTellsApart) {
+  // A ramp, so fine that its level alone would round to 1 mm.
+  const auto steps_mm = [](const std::string& name, GDALDataType type, double scale) {
+    const std::string folder = FreshFolder(name);
+    Write(folder + "/ramp.tif", {.width = 64,
+                                 .height = 64,
+                                 .type = type,
+                                 .affine = Degrees(10, 20, 0.0003),
+                                 .value = [](int, int column, int row) { return 3.0 * column + row; },
+                                 .finish = [&](GDALDataset& dataset) { dataset.GetRasterBand(1)->SetScale(scale); }});
+    MustBuild(folder, Layer("elevation", {"path = \"ramp.tif\"\ndatum = \"ellipsoid\""}));
+    const auto dataset = MustOpen(folder);
+    const Quadcode node = dataset->FinestContaining(0, 19.99, 10.01);
+    EXPECT_GE(node.level(), 10);
+    const auto page = dataset->ReadElevation(0, node);
+    EXPECT_TRUE(page.ok()) << page.message();
+    int32_t common = 0;
+    for (int row = 0; row < kPosts; ++row) {
+      for (int column = 0; column < kPosts; ++column) {
+        const double longitude = node.Box().west_deg + node.SizeDegrees() * column / kCells;
+        const double latitude = node.Box().south_deg + node.SizeDegrees() * row / kCells;
+        if (longitude < 10.002 || longitude > 10.017 || latitude > 19.998 || latitude < 19.983) continue;
+        common = std::gcd(common, (*page)->at(column, row));
+      }
+    }
+    return common;
+  };
+  EXPECT_EQ(steps_mm("metres", GDT_Int16, 1), 32);
+  EXPECT_EQ(steps_mm("feet", GDT_Int16, 0.3048), 16);
+  EXPECT_EQ(steps_mm("centimetres", GDT_Int32, 0.01), 1);
+  EXPECT_EQ(steps_mm("float", GDT_Float32, 1), 1);
 }
 
 TEST(Build, APoleHasOneHeightALevel) {
