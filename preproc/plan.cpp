@@ -37,7 +37,7 @@ int FinestLevel(double spacing_deg, LayerKind kind) {
 }
 
 double RefineTolerance_m(int source_level) {
-  constexpr double kShareOfSpacing = 1.0 / 15, kMost_m = 50;
+  constexpr double kShareOfSpacing = 1.0 / 12, kMost_m = 50;
   const double spacing_deg = std::ldexp(kTreeDegrees / kCells, -source_level);
   return std::min(kShareOfSpacing * spacing_deg * kRadiansPerDegree * kEquatorialRadius_m, kMost_m);
 }

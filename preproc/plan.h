@@ -16,11 +16,11 @@
 
 namespace belvedere {
 
-inline constexpr int kRefineLevels = 2;
+inline constexpr int kRefineLevels = 1;
 // A page is refined where more than this share of its probes is further than the tolerance from the source (decision
 // 0011).
 inline constexpr double kRefineShare = 0.025;
-// For a source of that finest level: a fifteenth of the distance of its level's posts, and 50 m at most.
+// For a source of that finest level: a twelfth of the distance of its level's posts, and 50 m at most.
 double RefineTolerance_m(int source_level);
 
 struct PlannedSource {

@@ -135,11 +135,11 @@ TEST(Export, HeightsAreThoseStoredAtEveryPostOver180EAndPageBorders) {
   const auto dataset = MustOpen(folder);
   StoredPages<ElevationPage> pages(*dataset);
   const std::string out = folder + "/seam_out.tif";
-  const auto report = MustExport(*dataset, {.layer = "elevation", .out = out, .extent = GeoBox{175, -4, -175, 4}});
+  const auto report = MustExport(*dataset, {.layer = "elevation", .out = out, .extent = GeoBox{173, -7, -173, 7}});
   EXPECT_EQ(report.grid.level, dataset->MaxLevel(0));
   const ReadBack read = Read(out);
-  EXPECT_NEAR(read.longitude(0), 175, 0.05);
-  EXPECT_NEAR(read.longitude(read.width - 1), 185, 0.05);
+  EXPECT_NEAR(read.longitude(0), 173, 0.05);
+  EXPECT_NEAR(read.longitude(read.width - 1), 187, 0.05);
   int exact = 0, east_of_180 = 0, enlarged = 0;
   for (int row = 0; row < read.height; ++row) {
     for (int column = 0; column < read.width; ++column) {
@@ -240,7 +240,7 @@ TEST(Export, WithoutFillingThereIsNodataWhereTheLevelHasNoPage) {
   StoredPages<ElevationPage> pages(*dataset);
   const std::string out = folder + "/holes.tif";
   const auto report = MustExport(
-      *dataset, {.layer = "elevation", .out = out, .extent = GeoBox{176, -4, -176, 4}, .enlarge = Enlarge::kNothing});
+      *dataset, {.layer = "elevation", .out = out, .extent = GeoBox{173, -7, -173, 7}, .enlarge = Enlarge::kNothing});
   const ReadBack read = Read(out);
   int holes = 0, heights = 0;
   for (int row = 0; row < read.height; ++row) {
