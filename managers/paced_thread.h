@@ -1,6 +1,6 @@
 // PacedThread: runs a step again and again on a thread of its own, at most so many times a second, until destroyed. All
-// such threads together leave two of the machine's cores to others, or half of them where there are fewer than four; but
-// each may take half of a core.
+// such threads together leave two of the machine's cores to others, or half of them where there are fewer than four;
+// but each may take half of a core.
 //
 // Threads: constructed and destroyed by one thread; destroying waits for the step that is running, and for no pause.
 #pragma once

@@ -65,7 +65,8 @@ void FrameTarget::Resolve() {
 }
 
 int FrameTarget::SamplesWorthTheirTime(const Clock& clock) {
-  constexpr int kSamples = 4, kTries = 4;
+  constexpr int kSamples = 4;
+  constexpr int kTries = 16;  // the first while its clocks are still low
   constexpr double kMost_ms = 0.5;
   FrameTarget target(kSamples);
   target.Resize(1920, 1080);

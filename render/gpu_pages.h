@@ -48,8 +48,8 @@ class GpuPages {
   // Whether pages of the data type come to the GPU: of terrain, lists bring the vertices.
   bool IsKept(DataType type) const { return KindOf(type) >= PageKind::kColour; }
   PageKind KindOf(DataType type) const { return layers_.at(type).kind; }
-  // Whether the image slot is of the colour array, and which layer of its array it is.
   bool HoldsColour(DataType type) const { return KindOf(type) == PageKind::kColour; }
+  // Whether the image slot is of the colour array, and which layer of its array it is.
   bool IsColour(int image_slot) const { return colour_.Owns(image_slot); }
   int ArrayLayer(int image_slot) const { return IsColour(image_slot) ? image_slot : image_slot - overlay_.first(); }
   uint64_t uploaded_bytes() const { return uploaded_bytes_; }

@@ -71,7 +71,10 @@ Result<std::unique_ptr<Renderer>> Renderer::Make(const RenderOptions& options, c
   Result<ContextFacts> facts = InspectContext();
   if (!facts.ok()) return facts.status();
   RenderOptions complete = WithDefaults(options, facts->software);
-  if (complete.samples < 0) complete.samples = FrameTarget::SamplesWorthTheirTime(clock);
+  if (complete.samples < 0) {
+    complete.samples = FrameTarget::SamplesWorthTheirTime(clock);
+    LogInfo("render: {}: {} samples a pixel, as [render] samples does not say", facts->renderer, complete.samples);
+  }
   auto renderer = std::unique_ptr<Renderer>(new Renderer(complete, layers, clock, std::move(*facts)));
   if (!renderer->atlas_.font().ok()) LogWarning("{}", renderer->atlas_.font().message());
   return renderer;

@@ -361,9 +361,9 @@ int Soak(const std::string& dataset, double minutes) {
     fmt::print("process after {} minutes over after 5: {:+.2f} % (limit 2)\n", by_minute.size(), 100 * growth);
     steady = std::abs(growth) < 0.02;
   }
-  const size_t on_gpu =
-      static_cast<size_t>(WithDefaults({}, station->render().facts().software).colour_slots) * ImagePage::MipOffset(kImageMipLevels, ImageFormat::kRGBA8) +
-      static_cast<size_t>(kOverlaySlots) * ImagePage::MipOffset(kImageMipLevels, ImageFormat::kR8);
+  const size_t on_gpu = static_cast<size_t>(WithDefaults({}, station->render().facts().software).colour_slots) *
+                            ImagePage::MipOffset(kImageMipLevels, ImageFormat::kRGBA8) +
+                        static_cast<size_t>(kOverlaySlots) * ImagePage::MipOffset(kImageMipLevels, ImageFormat::kR8);
   const uint64_t failed = station->paging().cache.Stats().failed_pages;
   fmt::print("images on the GPU {} MiB, budget {} MiB; {} failed pages\n", on_gpu / kMiB, kBudget / kMiB, failed);
   fmt::print("cache budget {} MiB, peak {} MiB\n", kBudget / kMiB, peak / kMiB);
