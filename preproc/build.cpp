@@ -6,6 +6,7 @@
 #include "preproc/plan.h"
 #include "preproc/progress.h"
 #include "preproc/raster_source.h"
+#include "preproc/source_path.h"
 #include "preproc/surface_error.h"
 #include "runtime/base/log.h"
 #include "runtime/earth/geoid.h"
@@ -44,6 +45,13 @@ struct OpenLayer {
     return out;
   }
 };
+
+bool AnyNamesServer(const BuildSpec& spec) {
+  return std::any_of(spec.layers.begin(), spec.layers.end(), [](const LayerSpec& layer) {
+    return std::any_of(layer.sources.begin(), layer.sources.end(),
+                       [](const SourceSpec& source) { return NamesServer(source.path); });
+  });
+}
 
 // Makes the pages of one layer, from any of the workers.
 class LayerBuilder {
@@ -133,6 +141,7 @@ class Builder {
     GDALAllRegister();
     CPLSetErrorHandler(CPLQuietErrorHandler);
     GDALSetCacheMax64(kGdalCacheBytes);
+    KeepOffNetwork(!AnyNamesServer(spec_));
     auto geoid = Geoid::LoadEgm96();
     if (!geoid.ok()) return geoid.status();
     // Each round without what the one before found to be useless; so at most one more than there are sources.

@@ -1,5 +1,6 @@
 #include "preproc/spec.h"
 
+#include "preproc/source_path.h"
 #include "runtime/base/iso_time.h"
 
 #include <toml++/toml.h>
@@ -155,7 +156,7 @@ class Parser {
     const toml::table* table = node.as_table();
     if (table == nullptr) return Error(node, "\"source\" must be a table: write [[layer.source]]");
     if (Status status =
-            CheckKeys(*table, {"path", "nodata", "crs", "georeference", "unit", "datum", "feather_m", "time"});
+            CheckKeys(*table, {"path", "zoom", "nodata", "crs", "georeference", "unit", "datum", "feather_m", "time"});
         !status.ok()) {
       return status;
     }
@@ -163,7 +164,9 @@ class Parser {
     auto written = String(*table, "path");
     if (!written.ok()) return written.status();
     source.written_path = std::move(*written);
-    source.path = (std::filesystem::path(path_).parent_path() / source.written_path).string();
+    const auto zoom = ParseZoom(*table, source.written_path);
+    if (!zoom.ok()) return zoom.status();
+    source.path = ResolveSourcePath(source.written_path, std::filesystem::path(path_).parent_path().string(), *zoom);
     if (const toml::node* nodata = table->get("nodata")) {
       const auto value = Number(*nodata, "nodata");
       if (!value.ok()) return value.status();
@@ -184,6 +187,19 @@ class Parser {
     if (Status status = ParseHeightKeys(*table, kind, source); !status.ok()) return status;
     if (Status status = ParseTime(*table, kind, source); !status.ok()) return status;
     return source;
+  }
+
+  Result<std::optional<int>> ParseZoom(const toml::table& table, const std::string& path) const {
+    constexpr int64_t kFinestZoom = 24;
+    const toml::node* node = table.get("zoom");
+    if (!IsTileTemplate(path)) {
+      if (node != nullptr) return Error(*node, "\"zoom\" is of tiles alone: a path with {{z}}, {{x}} and {{y}}");
+      return std::optional<int>();
+    }
+    const auto zoom = node == nullptr ? std::nullopt : node->value_exact<int64_t>();
+    if (zoom && *zoom >= 0 && *zoom <= kFinestZoom) return std::optional<int>(static_cast<int>(*zoom));
+    return Error(node == nullptr ? *table.get("path") : *node,
+                 "tiles need a \"zoom\", the level that is read: a whole number from 0 to {}", kFinestZoom);
   }
 
   Status ParseTime(const toml::table& table, LayerKind kind, SourceSpec& source) const {

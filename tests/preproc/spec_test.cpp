@@ -58,6 +58,33 @@ kind = "imagery"
   EXPECT_EQ(spec->layers[1].sources[0].box->east_deg, 180.0);
 }
 
+TEST(Spec, PathsMayNameServersAndDrivers) {
+  const auto path_of = [](const std::string& path, const std::string& more = "") {
+    const auto spec = ParseSpec(
+        "[[layer]]\nname = \"i\"\nkind = \"imagery\"\n[[layer.source]]\npath = '" + path + "'\n" + more + "\n",
+        "dir/earth.toml");
+    EXPECT_TRUE(spec.ok()) << spec.message();
+    return spec.ok() ? spec->layers[0].sources[0].path : std::string();
+  };
+  EXPECT_EQ(path_of("https://a.org/b.tif?c=d"), "/vsicurl/https://a.org/b.tif?c=d");
+  for (const char* as_it_is :
+       {"WMS:https://a.org/wms", "/vsizip/a.zip/b.tif", "<GDAL_WMS></GDAL_WMS>", "GTIFF_DIR:2:a.tif"})
+    EXPECT_EQ(path_of(as_it_is), as_it_is);
+  EXPECT_EQ(path_of("c:d.tif"), "dir/c:d.tif") << "no driver has a small name";
+  const std::string tiles = path_of("http://a.org/{z}/{x}/{y}.png?k=1&l=2", "zoom = 7");
+  EXPECT_TRUE(Has(tiles, "http://a.org/${z}/${x}/${y}.png?k=1&amp;l=2")) << tiles;
+  EXPECT_TRUE(Has(tiles, "<TileLevel>7</TileLevel>")) << tiles;
+  EXPECT_TRUE(Has(tiles, "<YOrigin>top</YOrigin>")) << tiles;
+  EXPECT_TRUE(Has(path_of("http://a.org/{z}/{x}/{-y}.png", "zoom = 0"), "<YOrigin>bottom</YOrigin>"));
+
+  const std::string head = "[[layer]]\nname = \"i\"\nkind = \"imagery\"\n[[layer.source]]\npath = ";
+  for (const char* wrong : {"\"http://a.org/{z}/{x}/{y}.png\"", "\"http://a.org/{z}/{x}/{y}.png\"\nzoom = 25",
+                            "\"http://a.org/{z}/{x}/{y}.png\"\nzoom = \"7\"", "\"a.tif\"\nzoom = 7"}) {
+    const std::string message = Message(head + wrong + "\n");
+    EXPECT_TRUE(Has(message, "\"zoom\"") && Has(message, "dir/earth.toml:")) << wrong << ": " << message;
+  }
+}
+
 TEST(Spec, AnUnknownKeyNamesFileLineKeyAndTheNearest) {
   const std::string message =
       Message("[[layer]]\nname = \"e\"\nkind = \"elevation\"\n[[layer.source]]\npath = \"a\"\nnodta = 3\n");
