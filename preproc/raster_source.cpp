@@ -48,7 +48,9 @@ void ShrinkPixel(const Block& finer, const std::array<size_t, 4>& from, size_t c
       colour[c] += w * static_cast<float>(finer.colours[3 * at + c]);
   }
   if (weight <= 0 || count == 0) return;
-  out.coverage[to] = static_cast<uint8_t>(std::clamp(weight / static_cast<float>(count) + 0.5f, 1.0f, 255.0f));
+  // Of a domain, 255 says that nothing is missing, and is never rounded up to.
+  const float rounding = out.heights.empty() && out.colours.empty() ? 0.0f : 0.5f;
+  out.coverage[to] = static_cast<uint8_t>(std::clamp(weight / static_cast<float>(count) + rounding, 1.0f, 255.0f));
   if (!out.heights.empty()) out.heights[to] = height / weight;
   for (size_t c = 0; c < 3 && !out.colours.empty(); ++c) {
     out.colours[3 * to + c] = static_cast<uint8_t>(colour[c] / weight + 0.5f);
@@ -129,17 +131,35 @@ const std::string& RasterSource::remark() const {
   return reader_->remark();
 }
 
-uint64_t RasterSource::KeyOf(int pyramid_level, int column, int row) const {
-  return static_cast<uint64_t>(number_) << 48 | static_cast<uint64_t>(pyramid_level) << 42 |
-         static_cast<uint64_t>(column) << 21 | static_cast<uint64_t>(row);
+uint64_t RasterSource::KeyOf(Plane plane, int pyramid_level, int column, int row) const {
+  static_assert(kDeepestPyramid < 32);
+  const auto level = static_cast<uint64_t>(pyramid_level) | (plane == Plane::kDomain ? 32U : 0U);
+  return static_cast<uint64_t>(number_) << 48 | level << 42 | static_cast<uint64_t>(column) << 21 |
+         static_cast<uint64_t>(row);
 }
 
 std::shared_ptr<const Block> RasterSource::GetBlock(int pyramid_level, int column, int row) {
-  if (auto found = cache_.Find(KeyOf(pyramid_level, column, row))) return found;
+  const uint64_t key = KeyOf(Plane::kPixels, pyramid_level, column, row);
+  if (auto found = cache_.Find(key)) return found;
   if (pyramid_level == 0) return ReadFromFile(column, row);
-  auto block = Shrink(pyramid_level, column, row);
-  cache_.Insert(KeyOf(pyramid_level, column, row), block);
+  auto block = Shrink(Plane::kPixels, pyramid_level, column, row);
+  cache_.Insert(key, block);
   return block;
+}
+
+std::shared_ptr<const Block> RasterSource::GetDomain(int pyramid_level, int column, int row) {
+  const uint64_t key = KeyOf(Plane::kDomain, pyramid_level, column, row);
+  if (auto found = cache_.Find(key)) return found;
+  auto block = pyramid_level == 0 ? DomainOf(column, row) : Shrink(Plane::kDomain, pyramid_level, column, row);
+  cache_.Insert(key, block);
+  return block;
+}
+
+std::shared_ptr<const Block> RasterSource::DomainOf(int column, int row) {
+  auto domain = std::make_shared<Block>();
+  domain->coverage = GetBlock(0, column, row)->coverage;
+  for (uint8_t& coverage : domain->coverage) coverage = coverage > 0 ? 255 : 0;
+  return domain;
 }
 
 std::shared_ptr<const Block> RasterSource::ReadFromFile(int column, int row) {
@@ -157,14 +177,15 @@ std::shared_ptr<const Block> RasterSource::ReadFromFile(int column, int row) {
   for (int at = 0; at < window_width; at += kBlockSide) {
     auto block = std::make_shared<const Block>(CutBlock(window, window_width, window_height, at, kind_));
     const int block_column = (from + at) / kBlockSide;
-    cache_.Insert(KeyOf(0, block_column, row), block);
+    cache_.Insert(KeyOf(Plane::kPixels, 0, block_column, row), block);
     if (block_column == column) wanted = std::move(block);
   }
   return wanted;
 }
 
-std::shared_ptr<const Block> RasterSource::Shrink(int pyramid_level, int column, int row) {
-  auto out = std::make_shared<Block>(EmptyBlock(kind_));
+std::shared_ptr<const Block> RasterSource::Shrink(Plane plane, int pyramid_level, int column, int row) {
+  const bool is_domain = plane == Plane::kDomain;
+  auto out = std::make_shared<Block>(is_domain ? Block{{}, {}, std::vector<uint8_t>(kBlockPixels)} : EmptyBlock(kind_));
   const int finer_width = width(pyramid_level - 1);
   const int finer_height = height(pyramid_level - 1);
   constexpr int kHalf = kBlockSide / 2;
@@ -172,7 +193,8 @@ std::shared_ptr<const Block> RasterSource::Shrink(int pyramid_level, int column,
     const int finer_column = 2 * column + quarter % 2;
     const int finer_row = 2 * row + quarter / 2;
     if (finer_column * kBlockSide >= finer_width || finer_row * kBlockSide >= finer_height) continue;
-    const auto finer = GetBlock(pyramid_level - 1, finer_column, finer_row);
+    const auto finer = is_domain ? GetDomain(pyramid_level - 1, finer_column, finer_row)
+                                 : GetBlock(pyramid_level - 1, finer_column, finer_row);
     for (int y = 0; y < kHalf; ++y) {
       for (int x = 0; x < kHalf; ++x) {
         const int columns = std::clamp(finer_width - (finer_column * kBlockSide + 2 * x), 0, 2);

@@ -71,6 +71,9 @@ class RasterSource {
   // Levels under which a source that goes round the Earth still closes on itself.
   int pyramid_levels() const { return pyramid_levels_; }
   std::shared_ptr<const Block> GetBlock(int pyramid_level, int column, int row);
+  // The pixels that are the source's own, as a block of coverage alone: 255 where all that lies under a pixel is valid,
+  // however transparent, 0 where nothing is, between the two the share of it that is.
+  std::shared_ptr<const Block> GetDomain(int pyramid_level, int column, int row);
 
   // What could not be read, if anything: the source is then to be left out.
   Status failure() const EXCLUDES_LOCK(failure_mutex_);
@@ -89,9 +92,11 @@ class RasterSource {
   static int ShrunkSide(int side, int level) {
     return static_cast<int>((int64_t{side} + (int64_t{1} << level) - 1) >> level);
   }
-  uint64_t KeyOf(int pyramid_level, int column, int row) const;
+  enum class Plane { kPixels, kDomain };
+  uint64_t KeyOf(Plane plane, int pyramid_level, int column, int row) const;
   std::shared_ptr<const Block> ReadFromFile(int column, int row);
-  std::shared_ptr<const Block> Shrink(int pyramid_level, int column, int row);
+  std::shared_ptr<const Block> Shrink(Plane plane, int pyramid_level, int column, int row);
+  std::shared_ptr<const Block> DomainOf(int column, int row);
   void Fail(Status status) EXCLUDES_LOCK(failure_mutex_);
 
   const SourceSpec spec_;

@@ -6,6 +6,7 @@
 // Threads: one sampler a thread; the source is shared.
 #pragma once
 
+#include "preproc/feather.h"
 #include "preproc/lattice.h"
 #include "preproc/raster_source.h"
 #include "preproc/resample.h"
@@ -40,8 +41,6 @@ class SourceSampler {
     double shrink_x = 1, shrink_y = 1;  // pixels of that level between positions
     bool operator==(const Scale&) const = default;
   };
-  enum class Edge { kRepeat, kEmpty };  // what lies around the source
-
   // Pixel coordinates at level 0, NaN off the source: of the columns and of the rows where the source is separable,
   // else of every position.
   struct Positions {
@@ -49,16 +48,26 @@ class SourceSampler {
   };
 
   Scale ScaleAt(double latitude_deg, double spacing_deg);
+  // Of a pixel of level 0, measured at the source's middle longitude.
+  PixelSize PixelSizeAt(double latitude_deg);
   Positions PositionsOf(const LatticeRows& lattice, size_t first_row, size_t rows);
-  PixelWindow MakeWindow(int pyramid_level, const AxisTaps& x, const AxisTaps& y, Edge edge) const;
+  PixelWindow MakeWindow(int pyramid_level, const AxisTaps& x, const AxisTaps& y) const;
   template <typename Number>
-  std::vector<Number> Filter(const Positions& positions, const Scale& scale, Kernel kernel, Edge edge) const;
-  void Feather(const Positions& positions, std::span<float> weights);
+  std::vector<Number> Filter(const Positions& positions, const Scale& scale, Kernel kernel) const;
+  // rows: of the lattice that the positions are of, from its first_row on; weights: one a position, to be multiplied.
+  void ApplyFeather(const LatticeRows& lattice, size_t first_row, size_t rows, const Positions& positions,
+                    const Scale& scale, std::span<float> weights);
+  // The domain round positions at a pyramid level, margin_x and margin_y pixels further than they reach.
+  DomainWindow MakeDomainWindow(int pyramid_level, const Positions& at_level, int margin_x, int margin_y) const;
+  int FeatherLevel();
 
   RasterSource& source_;
   const LayerKind kind_;
   const size_t channels_;
   std::unique_ptr<Georeference> georeference_;
+  int feather_level_ = 0;
+  // Of a source that goes round the Earth: what lies beyond its first or last row is not another's.
+  bool first_row_is_pole_ = false, last_row_is_pole_ = false;
 };
 
 }  // namespace belvedere
