@@ -40,6 +40,10 @@ uint8_t Byte(float value) {
   return static_cast<uint8_t>(std::clamp(value, 0.0f, 255.0f) + 0.5f);
 }
 
+double AboveEllipsoid_m(const SourceSpec& spec, double undulation_m) {
+  return spec.datum == VerticalDatum::kEgm96 ? undulation_m : spec.datum_m;
+}
+
 // What is still to be covered, position by position.
 struct Remaining {
   explicit Remaining(size_t count) : shares(count, 1.0f) {}
@@ -74,7 +78,9 @@ void WriteTexels(const LatticeRows& lattice, const std::vector<float>& colours, 
 }  // namespace
 
 Composite::Composite(LayerKind kind, const std::vector<RasterSource*>& sources, const Geoid& geoid)
-    : kind_(kind), geoid_(geoid) {
+    : kind_(kind), geoid_(geoid), void_fill_([this](size_t which, const LatticeRows& lattice, int level) {
+        return GroundOf(which, lattice, level);
+      }) {
   for (auto source = sources.rbegin(); source != sources.rend(); ++source) samplers_.emplace_back(**source, kind);
 }
 
@@ -86,25 +92,31 @@ bool Composite::MayCover(const SourceSampler& sampler, const LatticeRows& lattic
                      [&](double longitude_deg) { return Covers(box, longitude_deg, std::max(*south, box.south_deg)); });
 }
 
-Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, double spacing_deg) {
+Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, double spacing_deg, int level, size_t first) {
   const size_t columns = lattice.longitudes_deg.size();
   const size_t count = columns * lattice.latitudes_deg.size();
   const std::vector<double> undulation = geoid_.Heights(lattice.latitudes_deg, lattice.longitudes_deg);
   Heights heights{std::vector<double>(count, 0.0), std::vector<int32_t>(count, 0)};
   Remaining remaining(count);
-  for (SourceSampler& sampler : samplers_) {
+  for (size_t which = first; which < samplers_.size(); ++which) {
+    SourceSampler& sampler = samplers_[which];
     if (!MayCover(sampler, lattice)) continue;
     const Samples<double> samples = sampler.Sample<double>(lattice, spacing_deg);
     const SourceSpec& spec = sampler.source().spec();
     const int32_t quantum_mm = QuantumOfSource_mm(sampler.source().precision_m());
     bool used = false;
     for (size_t i = 0; i < count; ++i) {
+      if (!samples.void_weights.empty() && samples.void_weights[i] > 0 && remaining.shares[i] > 0) {
+        const double delta_m =
+            void_fill_.DeltaAt(which, sampler.source().georeference(), level, lattice.longitudes_deg[i % columns],
+                               lattice.latitudes_deg[i / columns]);
+        heights.metres[i] += static_cast<double>(remaining.shares[i] * samples.void_weights[i]) * delta_m;
+      }
       if (samples.weights[i] <= 0) continue;
-      const double datum_m = spec.datum == VerticalDatum::kEgm96 ? undulation[i] : spec.datum_m;
       const float part = remaining.Take(i, samples.weights[i]);
       used = true;
       if (part <= 0) continue;
-      heights.metres[i] += static_cast<double>(part) * (samples.values[i] + datum_m);
+      heights.metres[i] += static_cast<double>(part) * (samples.values[i] + AboveEllipsoid_m(spec, undulation[i]));
       int32_t& finest_mm = heights.quanta_mm[i];
       finest_mm = finest_mm == 0 ? quantum_mm : std::min(finest_mm, quantum_mm);
     }
@@ -115,12 +127,28 @@ Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, double spaci
   return heights;
 }
 
+VoidFill::Ground Composite::GroundOf(size_t which, const LatticeRows& lattice, int level) {
+  const double spacing_deg = std::ldexp(kTreeDegrees / kCells, -level);
+  const Samples<double> samples = samplers_[which].Sample<double>(lattice, spacing_deg, false);
+  const std::vector<double> undulation = geoid_.Heights(lattice.latitudes_deg, lattice.longitudes_deg);
+  const SourceSpec& spec = samplers_[which].source().spec();
+  VoidFill::Ground ground{{}, samples.values, HeightsAt(lattice, spacing_deg, level, which + 1).metres};
+  for (size_t i = 0; i < samples.weights.size(); ++i) {
+    ground.source_m[i] += AboveEllipsoid_m(spec, undulation[i]);
+    const bool is_void = !samples.void_weights.empty() && samples.void_weights[i] > 0;
+    ground.posts.push_back(samples.weights[i] > 0 ? DeltaGrid::Post::kValid
+                           : is_void              ? DeltaGrid::Post::kVoid
+                                                  : DeltaGrid::Post::kOutside);
+  }
+  return ground;
+}
+
 std::vector<int32_t> Composite::Heights_mm(Quadcode node) {
   const double spacing_deg = node.SizeDegrees() / kCells;
   const int32_t quantum_mm = QuantumOfLevel_mm(node);
   std::vector<int32_t> heights_mm(static_cast<size_t>(kElevationSide) * static_cast<size_t>(kElevationSide));
   for (const LatticeRows& lattice : PostLattice(node)) {
-    const Heights heights = HeightsAt(lattice, spacing_deg);
+    const Heights heights = HeightsAt(lattice, spacing_deg, node.level());
     const size_t columns = lattice.longitudes_deg.size();
     for (size_t j = 0; j < lattice.rows.size(); ++j) {
       int32_t* out = &heights_mm[static_cast<size_t>(lattice.rows[j] * kElevationSide)];
@@ -134,7 +162,7 @@ std::vector<int32_t> Composite::Heights_mm(Quadcode node) {
 }
 
 std::vector<double> Composite::ProbeHeights(Quadcode node) {
-  return HeightsAt(ProbeLattice(node), node.SizeDegrees() / (2 * kCells)).metres;
+  return HeightsAt(ProbeLattice(node), node.SizeDegrees() / (2 * kCells), node.level() + 1).metres;
 }
 
 std::vector<uint8_t> Composite::Texels(Quadcode node) {

@@ -12,6 +12,8 @@ namespace {
 
 constexpr size_t kBlockPixels = static_cast<size_t>(kBlockSide) * static_cast<size_t>(kBlockSide);
 constexpr int kDeepestPyramid = 24;
+constexpr int kMostVoidsSide = 4096;  // pixels, where voids are looked for
+constexpr int kCoarsestVoids = 6;
 
 Block EmptyBlock(LayerKind kind) {
   Block block;
@@ -158,8 +160,52 @@ std::shared_ptr<const Block> RasterSource::GetDomain(int pyramid_level, int colu
 std::shared_ptr<const Block> RasterSource::DomainOf(int column, int row) {
   auto domain = std::make_shared<Block>();
   domain->coverage = GetBlock(0, column, row)->coverage;
-  for (uint8_t& coverage : domain->coverage) coverage = coverage > 0 ? 255 : 0;
+  bool whole = true;
+  for (uint8_t& coverage : domain->coverage) {
+    coverage = coverage > 0 ? 255 : 0;
+    whole &= coverage != 0;
+  }
+  if (whole || kind_ != LayerKind::kElevation || !HasVoids()) return domain;
+  for (int y = 0; y < kBlockSide; ++y) {
+    for (int x = 0; x < kBlockSide; ++x) {
+      uint8_t& coverage = domain->coverage[static_cast<size_t>(y * kBlockSide + x)];
+      const int at_x = column * kBlockSide + x, at_y = row * kBlockSide + y;
+      if (coverage == 0 && at_x < width_ && at_y < height_ && Voids().Holds(at_x >> voids_level_, at_y >> voids_level_))
+        coverage = 255;
+    }
+  }
   return domain;
+}
+
+const VoidMap& RasterSource::Voids() {
+  std::call_once(voids_found_, [this] { voids_ = FindVoids(); });
+  return voids_;
+}
+
+// On a level of the pyramid that is not too large, where a pixel with anything missing under it is missing, so that no
+// void is too small.
+VoidMap RasterSource::FindVoids() {
+  while (voids_level_ < std::min(pyramid_levels_, kCoarsestVoids) &&
+         std::max(width(voids_level_), height(voids_level_)) > kMostVoidsSide)
+    ++voids_level_;
+  const auto across = static_cast<size_t>(width(voids_level_));
+  VoidFinder finder(width(voids_level_), georeference_->wraps());
+  for (int top = 0; top < height_; top += kBlockSide) {
+    std::vector<uint8_t> missing(across * static_cast<size_t>(kBlockSide >> voids_level_), 0);
+    const int rows = std::min(kBlockSide, height_ - top);
+    for (int left = 0; left < width_; left += kBlockSide) {
+      const auto block = GetBlock(0, left / kBlockSide, top / kBlockSide);
+      const int columns = std::min(kBlockSide, width_ - left);
+      for (int y = 0; y < rows; ++y) {
+        uint8_t* const out = &missing[across * static_cast<size_t>(y >> voids_level_)];
+        for (int x = 0; x < columns; ++x)
+          out[(left + x) >> voids_level_] |= block->coverage[static_cast<size_t>(y * kBlockSide + x)] == 0;
+      }
+    }
+    const int last = (rows - 1) >> voids_level_;
+    for (int row = 0; row <= last; ++row) finder.AddRow({&missing[across * static_cast<size_t>(row)], across});
+  }
+  return finder.Finish();
 }
 
 std::shared_ptr<const Block> RasterSource::ReadFromFile(int column, int row) {

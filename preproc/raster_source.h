@@ -11,6 +11,7 @@
 
 #include "preproc/georeference.h"
 #include "preproc/spec.h"
+#include "preproc/void_map.h"
 #include "runtime/base/mutex.h"
 #include "runtime/base/status.h"
 
@@ -19,6 +20,7 @@
 #include <cstdint>
 #include <list>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -72,8 +74,11 @@ class RasterSource {
   int pyramid_levels() const { return pyramid_levels_; }
   std::shared_ptr<const Block> GetBlock(int pyramid_level, int column, int row);
   // The pixels that are the source's own, as a block of coverage alone: 255 where all that lies under a pixel is valid,
-  // however transparent, 0 where nothing is, between the two the share of it that is.
+  // however transparent, or of elevation in a void, 0 where nothing is, between the two the share of it that is.
   std::shared_ptr<const Block> GetDomain(int pyramid_level, int column, int row);
+
+  // Elevation: whether anything is missing within; the first call reads the whole source.
+  bool HasVoids() { return !Voids().empty(); }
 
   // What could not be read, if anything: the source is then to be left out.
   Status failure() const EXCLUDES_LOCK(failure_mutex_);
@@ -97,6 +102,8 @@ class RasterSource {
   std::shared_ptr<const Block> ReadFromFile(int column, int row);
   std::shared_ptr<const Block> Shrink(Plane plane, int pyramid_level, int column, int row);
   std::shared_ptr<const Block> DomainOf(int column, int row);
+  const VoidMap& Voids();
+  VoidMap FindVoids();
   void Fail(Status status) EXCLUDES_LOCK(failure_mutex_);
 
   const SourceSpec spec_;
@@ -107,6 +114,9 @@ class RasterSource {
   std::unique_ptr<Georeference> georeference_;
   int width_ = 0, height_ = 0;
   int pyramid_levels_ = 0;
+  int voids_level_ = 0;  // of the pyramid, that voids_ is of
+  std::once_flag voids_found_;
+  VoidMap voids_;  // once they are found
   std::atomic<bool> used_{false};
   std::atomic<int64_t> bytes_read_{0};
   mutable Mutex failure_mutex_;

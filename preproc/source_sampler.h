@@ -23,6 +23,8 @@ struct Samples {
   size_t channels = 1;
   std::vector<Number> values;  // channels a position
   std::vector<float> weights;  // how much of the position the source covers, feathered: 0 to 1
+  // Heights: the same, were the source's voids filled, of positions in them, else 0; empty where there are none.
+  std::vector<float> void_weights;
 };
 
 class SourceSampler {
@@ -33,7 +35,7 @@ class SourceSampler {
   const GeoBox& extent() const { return georeference_->extent(); }
   // spacing_deg: distance between posts or texels of the level. Number is double for heights, float for colours.
   template <typename Number>
-  Samples<Number> Sample(const LatticeRows& lattice, double spacing_deg);
+  Samples<Number> Sample(const LatticeRows& lattice, double spacing_deg, bool feathered = true);
 
  private:
   struct Scale {
@@ -51,14 +53,21 @@ class SourceSampler {
   // Of a pixel of level 0, measured at the source's middle longitude.
   PixelSize PixelSizeAt(double latitude_deg);
   Positions PositionsOf(const LatticeRows& lattice, size_t first_row, size_t rows);
-  PixelWindow MakeWindow(int pyramid_level, const AxisTaps& x, const AxisTaps& y) const;
+  static std::vector<double> AxisAtLevel(std::vector<double> axis, int pyramid_level);
+  bool IsOnSource(const Positions& positions, size_t columns, size_t i) const;
+  enum class Plane { kPixels, kDomain };  // of the domain the coverage alone
+  PixelWindow MakeWindow(int pyramid_level, const AxisTaps& x, const AxisTaps& y, Plane plane) const;
   template <typename Number>
-  std::vector<Number> Filter(const Positions& positions, const Scale& scale, Kernel kernel) const;
-  // rows: of the lattice that the positions are of, from its first_row on; weights: one a position, to be multiplied.
-  void ApplyFeather(const LatticeRows& lattice, size_t first_row, size_t rows, const Positions& positions,
-                    const Scale& scale, std::span<float> weights);
+  std::vector<Number> Filter(const Positions& positions, const Scale& scale, Kernel kernel, Plane plane) const;
+  // Sets weights, one a position, to 1 where the position lies in a void and no height is.
+  void FindVoids(const Positions& positions, const Scale& scale, std::span<const float> weights,
+                 std::span<float> void_weights) const;
+  // The feather of rows of a lattice, from its first_row on, one weight a position.
+  std::vector<float> FeatherOf(const LatticeRows& lattice, size_t first_row, size_t rows, const Positions& positions,
+                               const Scale& scale);
   // The domain round positions at a pyramid level, margin_x and margin_y pixels further than they reach.
   DomainWindow MakeDomainWindow(int pyramid_level, const Positions& at_level, int margin_x, int margin_y) const;
+  void PrepareFeather();
   int FeatherLevel();
 
   RasterSource& source_;
