@@ -37,6 +37,16 @@ struct OpenLayer {
   std::vector<std::unique_ptr<RasterSource>> sources;
   std::vector<PlannedSource> plan;
 
+  void PutFinestLast() {
+    OpenLayer sorted;
+    for (const size_t place : PlacesByResolution(plan)) {
+      sorted.sources.push_back(std::move(sources[place]));
+      sorted.plan.push_back(plan[place]);
+    }
+    sources = std::move(sorted.sources);
+    plan = std::move(sorted.plan);
+  }
+
   std::vector<RasterSource*> pointers() const {
     std::vector<RasterSource*> out;
     out.reserve(sources.size());
@@ -196,9 +206,11 @@ class Builder {
           continue;
         }
         const Georeference& georeference = (*source)->georeference();
-        layer.plan.push_back({georeference.extent(), FinestLevel(georeference.spacing_deg(), layer_spec.kind)});
+        layer.plan.push_back({georeference.extent(), FinestLevel(georeference.spacing_deg(), layer_spec.kind),
+                              georeference.spacing_deg(), source_spec.utc_s.has_value()});
         layer.sources.push_back(std::move(*source));
       }
+      if (layer_spec.priority == Priority::kResolution) layer.PutFinestLast();
       if (IsWorthBuilding(layer)) layers_.push_back(std::move(layer));
     }
     if (!layers_.empty()) return {};

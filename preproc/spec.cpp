@@ -107,7 +107,8 @@ class Parser {
   Result<std::vector<LayerSpec>> ParseLayer(const toml::node& node) const {
     const toml::table* table = node.as_table();
     if (table == nullptr) return Error(node, "\"layer\" must be a table: write [[layer]]");
-    if (Status status = CheckKeys(*table, {"name", "kind", "source", "repeats"}); !status.ok()) return status;
+    if (Status status = CheckKeys(*table, {"name", "kind", "source", "repeats", "priority"}); !status.ok())
+      return status;
     LayerSpec layer;
     auto name = String(*table, "name");
     if (!name.ok()) return name.status();
@@ -119,6 +120,7 @@ class Parser {
       return Error(*table->get("kind"), "\"kind\" must be \"elevation\" or \"imagery\", here it is \"{}\"", *kind);
     }
     layer.kind = *kind == "elevation" ? LayerKind::kElevation : LayerKind::kImagery;
+    if (Status status = ParsePriority(*table, layer); !status.ok()) return status;
     const toml::array* sources = (*table)["source"].as_array();
     if (sources == nullptr || sources->empty()) {
       return Error(*table, "layer \"{}\" has no source: write [[layer.source]] with a path", layer.name);
@@ -131,6 +133,18 @@ class Parser {
     const auto repeats = ParseRepeats(*table, layer);
     if (!repeats.ok()) return repeats.status();
     return StepsOf(std::move(layer), *repeats);
+  }
+
+  Status ParsePriority(const toml::table& table, LayerSpec& layer) const {
+    const toml::node* node = table.get("priority");
+    if (node == nullptr) return {};
+    const auto priority = String(table, "priority");
+    if (!priority.ok()) return priority.status();
+    if (*priority != "order" && *priority != "resolution") {
+      return Error(*node, "\"priority\" must be \"order\" or \"resolution\", here it is \"{}\"", *priority);
+    }
+    layer.priority = *priority == "order" ? Priority::kOrder : Priority::kResolution;
+    return {};
   }
 
   Result<Repeats> ParseRepeats(const toml::table& table, const LayerSpec& layer) const {
@@ -273,7 +287,8 @@ std::vector<LayerSpec> StepsOf(LayerSpec layer, Repeats repeats) {
     return steps;
   }
   for (const double utc_s : times) {
-    LayerSpec step{layer.name + "@" + FormatIsoTime(utc_s), layer.kind, {}, StepOf{layer.name, utc_s, repeats}};
+    LayerSpec step{
+        layer.name + "@" + FormatIsoTime(utc_s), layer.kind, {}, StepOf{layer.name, utc_s, repeats}, layer.priority};
     for (const bool timed : {false, true}) {
       for (const SourceSpec& source : layer.sources) {
         if (timed ? source.utc_s == utc_s : !source.utc_s) step.sources.push_back(source);

@@ -1,4 +1,4 @@
-// Builds of layers whose sources overlap: feathers along borders that are no rectangles.
+// Builds of layers whose sources overlap: which wins, and feathers along borders that are no rectangles.
 #include "preproc/build.h"
 
 #include "preproc/report.h"
@@ -232,6 +232,28 @@ TEST(BuildLayering, WhatGoesRoundTheEarthHasNoBorderToFeather) {
     EXPECT_NEAR(HeightAt(*dataset, latitude, 179.9), 700, 0.1) << latitude;
     EXPECT_NEAR(HeightAt(*dataset, latitude, 20), 700, 0.1) << latitude;
   }
+}
+
+TEST(BuildLayering, TheFinestSourceWinsWhereThatIsAskedFor) {
+  const std::string folder = FreshFolder("priority");
+  const auto flat = [&](const std::string& name, double value, double pixel) {
+    Write(folder + "/" + name + ".tif", {.width = static_cast<int>(std::lround(2 / pixel)),
+                                         .height = static_cast<int>(std::lround(2 / pixel)),
+                                         .affine = Degrees(10, 12, pixel),
+                                         .value = [=](int, int, int) { return value; }});
+    return "path = \"" + name + ".tif\"\ndatum = \"ellipsoid\"";
+  };
+  const std::vector<std::string> sources{flat("fine", 100, 0.01), flat("as_fine", 200, 0.01), flat("coarse", 300, 0.1)};
+  const auto height = [&](const std::string& priority) {
+    std::string text = Layer("elevation", sources);
+    text.insert(text.find("kind"), priority);
+    MustBuild(folder, text);
+    return HeightAt(*MustOpen(folder), 11, 11);
+  };
+  EXPECT_NEAR(height(""), 300, 0.1);
+  EXPECT_NEAR(height("priority = \"order\"\n"), 300, 0.1);
+  EXPECT_NEAR(height("priority = \"resolution\"\n"), 200, 0.1);
+  EXPECT_EQ(MustOpen(folder)->layers()[0].sources.back().path, "as_fine.tif") << "the record says which is best";
 }
 
 }  // namespace

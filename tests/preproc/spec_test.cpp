@@ -171,6 +171,26 @@ TEST(Spec, WrongTimesAreSaid) {
   }
 }
 
+TEST(Spec, PriorityIsByOrderUnlessResolutionIsAskedFor) {
+  const auto text = [](const std::string& key, const std::string& more = "") {
+    return "[[layer]]\nname = \"i\"\nkind = \"imagery\"\n" + key + "\n[[layer.source]]\npath = \"a\"\n" + more;
+  };
+  const auto priority = [&](const std::string& key, const std::string& more = "") {
+    const auto spec = ParseSpec(text(key, more), "dir/earth.toml");
+    EXPECT_TRUE(spec.ok()) << spec.message();
+    return spec.ok() ? spec->layers.back().priority : Priority::kOrder;
+  };
+  EXPECT_EQ(priority(""), Priority::kOrder);
+  EXPECT_EQ(priority("priority = \"order\""), Priority::kOrder);
+  EXPECT_EQ(priority("priority = \"resolution\""), Priority::kResolution);
+  EXPECT_EQ(priority("priority = \"resolution\"", "time = \"2004-01-01\"\n"), Priority::kResolution) << "of every step";
+  const std::string message = Message(text("priority = \"age\""));
+  for (const char* part : {"dir/earth.toml:4:", "\"priority\"", "\"resolution\"", "\"age\""})
+    EXPECT_TRUE(Has(message, part)) << message;
+  EXPECT_TRUE(Has(Message(text("priority = 1")), "must be a string"));
+  EXPECT_TRUE(Has(Message(text("priorty = \"order\"")), "\"priority\""));
+}
+
 TEST(Spec, EachTimeCountsAsALayer) {
   std::string text = "[[layer]]\nname = \"i\"\nkind = \"imagery\"\n";
   for (int year = 1700; year <= 1700 + kMaxDatasetLayers; ++year) {
