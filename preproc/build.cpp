@@ -1,5 +1,6 @@
 #include "preproc/build.h"
 
+#include "preproc/colour_match.h"
 #include "preproc/composite.h"
 #include "preproc/deltas_from_children.h"
 #include "preproc/page_sink.h"
@@ -36,6 +37,7 @@ struct OpenLayer {
   LayerSpec spec;
   std::vector<std::unique_ptr<RasterSource>> sources;
   std::vector<PlannedSource> plan;
+  std::vector<Unmatched> unmatched;
 
   void PutFinestLast() {
     OpenLayer sorted;
@@ -156,6 +158,9 @@ class Builder {
       const double opened_s = clock_.NowSeconds();
       auto writer = DatasetWriter::Create(options_.out);
       if (!writer.ok()) return writer.status();
+      for (OpenLayer& layer : layers_) {
+        if (layer.spec.kind == LayerKind::kImagery) layer.unmatched = MatchColours(layer.pointers(), **geoid);
+      }
       if (Status status = MakePages(**geoid, **writer); !status.ok()) return status;
       ExcludeUseless();
       const double made_s = clock_.NowSeconds();
@@ -286,6 +291,7 @@ class Builder {
           Warn(*layer.sources[i], "nothing of it is seen: later sources cover it all");
         }
       }
+      for (const Unmatched& unmatched : layer.unmatched) Warn(*unmatched.source, unmatched.reason);
       records.push_back(std::move(record));
     }
     const std::string now =

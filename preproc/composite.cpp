@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace belvedere {
 namespace {
@@ -59,14 +61,22 @@ struct Remaining {
   std::vector<float> shares;
 };
 
+void ApplyFit(const std::optional<ColourFit>& fit, std::vector<float>& colours) {
+  if (!fit) return;
+  for (size_t i = 0; i < colours.size(); ++i) {
+    const float colour = std::clamp(colours[i], 0.0f, 255.0f);
+    colours[i] = static_cast<float>(fit->gain[i % 3]) * colour + static_cast<float>(fit->offset[i % 3]);
+  }
+}
+
 // Colours, multiplied by the share that is covered, as straight RGBA into the rows of a page.
-void WriteTexels(const LatticeRows& lattice, const std::vector<float>& colours, const Remaining& remaining,
+void WriteTexels(const LatticeRows& lattice, const std::vector<float>& colours, const std::vector<float>& shares,
                  std::vector<uint8_t>& texels) {
   size_t i = 0;
   for (const int row : lattice.rows) {
     uint8_t* out = &texels[4 * static_cast<size_t>(row) * static_cast<size_t>(kImageSide)];
     for (size_t column = 0; column < static_cast<size_t>(kImageSide); ++column, ++i, out += 4) {
-      const float alpha = 1.0f - remaining.shares[i];
+      const float alpha = 1.0f - shares[i];
       out[3] = Byte(255.0f * alpha);
       if (out[3] == 0) continue;
       const float scale = alpha == 1.0f ? 1.0f : 1.0f / alpha;
@@ -165,29 +175,56 @@ std::vector<double> Composite::ProbeHeights(Quadcode node) {
   return HeightsAt(ProbeLattice(node), node.SizeDegrees() / (2 * kCells), node.level() + 1).metres;
 }
 
+Composite::Colours Composite::ColoursAt(const LatticeRows& lattice, double spacing_deg, size_t first) {
+  const size_t count = lattice.longitudes_deg.size() * lattice.latitudes_deg.size();
+  Colours colours{std::vector<float>(3 * count, 0.0f), {}, std::vector<bool>(samplers_.size(), false)};
+  Remaining remaining(count);
+  for (size_t which = first; which < samplers_.size() && remaining.Any(); ++which) {
+    SourceSampler& sampler = samplers_[which];
+    if (!MayCover(sampler, lattice)) continue;
+    Samples<float> samples = sampler.Sample<float>(lattice, spacing_deg);
+    ApplyFit(sampler.source().colour_fit(), samples.values);
+    for (size_t i = 0; i < count; ++i) {
+      if (samples.weights[i] <= 0) continue;
+      const float part = remaining.Take(i, samples.weights[i]);
+      for (size_t c = 0; c < 3; ++c)
+        colours.rgb[3 * i + c] += part * std::clamp(samples.values[3 * i + c], 0.0f, 255.0f);
+      colours.used[which] = true;
+    }
+  }
+  colours.shares = std::move(remaining.shares);
+  return colours;
+}
+
 std::vector<uint8_t> Composite::Texels(Quadcode node) {
   const double spacing_deg = node.SizeDegrees() / kImageInner;
   std::vector<uint8_t> texels(4 * static_cast<size_t>(kImageSide) * static_cast<size_t>(kImageSide), 0);
   for (const LatticeRows& lattice : TexelLattice(node)) {
-    const size_t count = lattice.longitudes_deg.size() * lattice.latitudes_deg.size();
-    std::vector<float> colours(3 * count, 0.0f);
-    Remaining remaining(count);
-    for (SourceSampler& sampler : samplers_) {
-      if (!MayCover(sampler, lattice)) continue;
-      const Samples<float> samples = sampler.Sample<float>(lattice, spacing_deg);
-      bool used = false;
-      for (size_t i = 0; i < count; ++i) {
-        if (samples.weights[i] <= 0) continue;
-        const float part = remaining.Take(i, samples.weights[i]);
-        for (size_t c = 0; c < 3; ++c) colours[3 * i + c] += part * std::clamp(samples.values[3 * i + c], 0.0f, 255.0f);
-        used = true;
-      }
-      if (used) sampler.source().SetUsed();
-      if (!remaining.Any()) break;
+    const Colours colours = ColoursAt(lattice, spacing_deg);
+    for (size_t which = 0; which < samplers_.size(); ++which) {
+      if (colours.used[which]) samplers_[which].source().SetUsed();
     }
-    WriteTexels(lattice, colours, remaining, texels);
+    WriteTexels(lattice, colours.rgb, colours.shares, texels);
   }
   return texels;
+}
+
+std::vector<ColourPair> Composite::ColourPairs(size_t place, const LatticeRows& lattice, double spacing_deg) {
+  constexpr float kOpaque = 0.99f;
+  const size_t which = samplers_.size() - 1 - place;
+  const Samples<float> own = samplers_[which].Sample<float>(lattice, spacing_deg, false);
+  const Colours below = ColoursAt(lattice, spacing_deg, which + 1);
+  std::vector<ColourPair> pairs;
+  for (size_t i = 0; i < own.weights.size(); ++i) {
+    const float covered = 1.0f - below.shares[i];
+    if (own.weights[i] < kOpaque || covered < kOpaque) continue;
+    ColourPair& pair = pairs.emplace_back();
+    for (size_t c = 0; c < 3; ++c) {
+      pair.source[c] = std::clamp(own.values[3 * i + c], 0.0f, 255.0f);
+      pair.below[c] = below.rgb[3 * i + c] / covered;
+    }
+  }
+  return pairs;
 }
 
 }  // namespace belvedere

@@ -8,6 +8,7 @@
 // Threads: one Composite a thread.
 #pragma once
 
+#include "preproc/colour_fit.h"
 #include "preproc/source_sampler.h"
 #include "preproc/void_fill.h"
 #include "runtime/earth/geoid.h"
@@ -30,6 +31,9 @@ class Composite {
   std::vector<int32_t> Heights_mm(Quadcode node);
   // kImageSide^2 RGBA texels. REQUIRES: kind is imagery.
   std::vector<uint8_t> Texels(Quadcode node);
+  // A source's colours, its place counted from the lowest, and those of what is below it, where both are opaque.
+  // REQUIRES: kind is imagery.
+  std::vector<ColourPair> ColourPairs(size_t place, const LatticeRows& lattice, double spacing_deg);
   // The height, in metres, that the sources have at the probes of a node, as if asked for by its children.
   std::vector<double> ProbeHeights(Quadcode node);
 
@@ -38,6 +42,13 @@ class Composite {
     std::vector<double> metres;
     std::vector<int32_t> quanta_mm;  // what the sources of each are rounded to; 0 where there is none
   };
+  struct Colours {
+    std::vector<float> rgb;     // 3 a position, multiplied by how much of it is covered
+    std::vector<float> shares;  // of a position that is not covered
+    std::vector<bool> used;     // a sampler
+  };
+  // Of the samplers from `first` on.
+  Colours ColoursAt(const LatticeRows& lattice, double spacing_deg, size_t first = 0);
   // Of the samplers from `first` on; level: of the lattice.
   Heights HeightsAt(const LatticeRows& lattice, double spacing_deg, int level, size_t first = 0);
   VoidFill::Ground GroundOf(size_t which, const LatticeRows& lattice, int level);

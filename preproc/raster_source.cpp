@@ -117,6 +117,7 @@ SourceRecord RasterSource::Record() const {
   record.extent = georeference_->extent();
   record.nodata = reader_->nodata();
   record.utc_s = spec_.utc_s;
+  record.colour_fit = colour_fit_;
   if (kind_ == LayerKind::kElevation) {
     record.datum = spec_.datum == VerticalDatum::kEgm96       ? "egm96"
                    : spec_.datum == VerticalDatum::kEllipsoid ? "ellipsoid"

@@ -21,6 +21,7 @@
 #include <list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -88,6 +89,9 @@ class RasterSource {
   const std::string& remark() const;
   // Whether any pixel is valid; reads the whole source.
   bool HasData();
+  // What is done to the colours of its pixels as pages are made. Set before any is.
+  const std::optional<ColourFit>& colour_fit() const { return colour_fit_; }
+  void SetColourFit(const ColourFit& fit) { colour_fit_ = fit; }
   bool used() const { return used_.load(std::memory_order_relaxed); }
   void SetUsed() { used_.store(true, std::memory_order_relaxed); }
   int64_t bytes_read() const { return bytes_read_.load(std::memory_order_relaxed); }
@@ -114,6 +118,7 @@ class RasterSource {
   std::unique_ptr<Georeference> georeference_;
   int width_ = 0, height_ = 0;
   int pyramid_levels_ = 0;
+  std::optional<ColourFit> colour_fit_;
   int voids_level_ = 0;  // of the pyramid, that voids_ is of
   std::once_flag voids_found_;
   VoidMap voids_;  // once they are found

@@ -81,8 +81,6 @@ DomainWindow SourceSampler::MakeDomainWindow(int pyramid_level, const Positions&
   const int end_y = std::min(down.first + down.length + margin_y, height + 1);
   DomainWindow window{first_x, first_y, (wraps ? end_x : std::min(end_x, width + 1)) - first_x, end_y - first_y, {}};
   window.inside.assign(static_cast<size_t>(window.width) * static_cast<size_t>(window.height), 0);
-  // Where a feather is a few pixels wide a gap in one is not to hide the whole pixel.
-  const uint8_t least = pyramid_level <= feather_level_ ? 255 : kHalfInside;
   std::shared_ptr<const Block> block;
   int block_column = -1, block_row = -1;
   uint8_t* out = window.inside.data();
@@ -101,7 +99,7 @@ DomainWindow SourceSampler::MakeDomainWindow(int pyramid_level, const Positions&
         block_row = row / kBlockSide;
         block = source_.GetDomain(pyramid_level, block_column, block_row);
       }
-      *out = block->coverage[static_cast<size_t>(row % kBlockSide * kBlockSide + column % kBlockSide)] >= least;
+      *out = block->coverage[static_cast<size_t>(row % kBlockSide * kBlockSide + column % kBlockSide)] >= kHalfInside;
     }
   }
   return window;

@@ -168,8 +168,8 @@ class Parser {
   Result<SourceSpec> ParseSource(const toml::node& node, LayerKind kind) const {
     const toml::table* table = node.as_table();
     if (table == nullptr) return Error(node, "\"source\" must be a table: write [[layer.source]]");
-    if (Status status =
-            CheckKeys(*table, {"path", "nodata", "crs", "georeference", "unit", "datum", "feather_m", "time"});
+    if (Status status = CheckKeys(
+            *table, {"path", "nodata", "crs", "georeference", "unit", "datum", "feather_m", "time", "match_colour"});
         !status.ok()) {
       return status;
     }
@@ -197,7 +197,18 @@ class Parser {
     if (Status status = ParseGeoreference(*table, source); !status.ok()) return status;
     if (Status status = ParseHeightKeys(*table, kind, source); !status.ok()) return status;
     if (Status status = ParseTime(*table, kind, source); !status.ok()) return status;
+    if (Status status = ParseMatchColour(*table, kind, source); !status.ok()) return status;
     return source;
+  }
+
+  Status ParseMatchColour(const toml::table& table, LayerKind kind, SourceSpec& source) const {
+    const toml::node* node = table.get("match_colour");
+    if (node == nullptr) return {};
+    if (kind == LayerKind::kElevation) return Error(*node, "\"match_colour\" means nothing for elevation");
+    const auto value = node->value_exact<bool>();
+    if (!value) return Error(*node, "\"match_colour\" must be true or false, here it is {}", TypeName(*node));
+    source.match_colour = *value;
+    return {};
   }
 
   Status ParseTime(const toml::table& table, LayerKind kind, SourceSpec& source) const {

@@ -37,6 +37,7 @@ struct SourceSpec {
   double datum_m = 0;  // for kOffset: height of the source's zero above the ellipsoid
   double feather_m = 0;
   std::optional<double> utc_s;  // imagery: when it was so; to the second
+  bool match_colour = false;    // imagery: its colours are fitted to those of what lies below it
 };
 
 // Which of a layer's sources wins.

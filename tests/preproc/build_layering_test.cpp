@@ -222,6 +222,21 @@ TEST(BuildLayering, AFeatherGoesRoundOnePixelThatIsMissing) {
   }
 }
 
+// Pixels that are missing here and there, far smaller than the feather is wide.
+TEST(BuildLayering, AWideFeatherDoesNotMindSpecks) {
+  const std::string folder = FreshFolder("specks");
+  MadeRaster grey =
+      Colours(1, [](int, int column, int row) { return column % 23 == 11 && row % 19 == 9 ? 0.0 : 180.0; });
+  grey.affine = Degrees(0, 60.2, 0.001);
+  grey.finish = [](GDALDataset& d) { d.GetRasterBand(1)->SetNoDataValue(0); };
+  Write(folder + "/grey.tif", grey);
+  MustBuild(folder, Layer("imagery", {"path = \"grey.tif\"\nfeather_m = 8000"}));
+  const auto dataset = MustOpen(folder);
+  for (int level = 4; level <= dataset->MaxLevel(0); ++level)
+    EXPECT_GT(TexelAt(*dataset, 60.1, 0.203, level)[3], 245) << "level " << level;
+  EXPECT_NEAR(TexelAt(*dataset, 60.1, 4000 / kMetresEast)[3], 128, 14);
+}
+
 TEST(BuildLayering, WhatGoesRoundTheEarthHasNoBorderToFeather) {
   const std::string folder = FreshFolder("round");
   Write(folder + "/world.tif",

@@ -191,6 +191,24 @@ TEST(Spec, PriorityIsByOrderUnlessResolutionIsAskedFor) {
   EXPECT_TRUE(Has(Message(text("priorty = \"order\"")), "\"priority\""));
 }
 
+TEST(Spec, ColoursAreMatchedWhereThatIsAskedFor) {
+  const auto text = [](const std::string& kind, const std::string& key) {
+    return "[[layer]]\nname = \"i\"\nkind = \"" + kind + "\"\n[[layer.source]]\npath = \"a\"\n" + key + "\n";
+  };
+  for (const auto& [key, wanted] :
+       {std::pair{"", false}, {"match_colour = true", true}, {"match_colour = false", false}}) {
+    const auto spec = ParseSpec(text("imagery", key), "dir/earth.toml");
+    ASSERT_TRUE(spec.ok()) << spec.message();
+    EXPECT_EQ(spec->layers[0].sources[0].match_colour, wanted) << key;
+  }
+  const std::string wrong_type = Message(text("imagery", "match_colour = \"yes\""));
+  for (const char* part : {"dir/earth.toml:6:", "\"match_colour\"", "true or false", "a string"})
+    EXPECT_TRUE(Has(wrong_type, part)) << wrong_type;
+  EXPECT_TRUE(
+      Has(Message(text("elevation", "match_colour = true")), ":6: \"match_colour\" means nothing for elevation"));
+  EXPECT_TRUE(Has(Message(text("imagery", "match_color = true")), "\"match_colour\""));
+}
+
 TEST(Spec, EachTimeCountsAsALayer) {
   std::string text = "[[layer]]\nname = \"i\"\nkind = \"imagery\"\n";
   for (int year = 1700; year <= 1700 + kMaxDatasetLayers; ++year) {
