@@ -1,5 +1,6 @@
 #include "preproc/build.h"
 
+#include "preproc/colour_match.h"
 #include "preproc/composite.h"
 #include "preproc/deltas_from_children.h"
 #include "preproc/page_sink.h"
@@ -37,6 +38,17 @@ struct OpenLayer {
   LayerSpec spec;
   std::vector<std::unique_ptr<RasterSource>> sources;
   std::vector<PlannedSource> plan;
+  std::vector<Unmatched> unmatched;
+
+  void PutFinestLast() {
+    OpenLayer sorted;
+    for (const size_t place : PlacesByResolution(plan)) {
+      sorted.sources.push_back(std::move(sources[place]));
+      sorted.plan.push_back(plan[place]);
+    }
+    sources = std::move(sorted.sources);
+    plan = std::move(sorted.plan);
+  }
 
   std::vector<RasterSource*> pointers() const {
     std::vector<RasterSource*> out;
@@ -155,6 +167,9 @@ class Builder {
       const double opened_s = clock_.NowSeconds();
       auto writer = DatasetWriter::Create(options_.out);
       if (!writer.ok()) return writer.status();
+      for (OpenLayer& layer : layers_) {
+        if (layer.spec.kind == LayerKind::kImagery) layer.unmatched = MatchColours(layer.pointers(), **geoid);
+      }
       if (Status status = MakePages(**geoid, **writer); !status.ok()) return status;
       ExcludeUseless();
       const double made_s = clock_.NowSeconds();
@@ -205,9 +220,11 @@ class Builder {
           continue;
         }
         const Georeference& georeference = (*source)->georeference();
-        layer.plan.push_back({georeference.extent(), FinestLevel(georeference.spacing_deg(), layer_spec.kind)});
+        layer.plan.push_back({georeference.extent(), FinestLevel(georeference.spacing_deg(), layer_spec.kind),
+                              georeference.spacing_deg(), source_spec.utc_s.has_value()});
         layer.sources.push_back(std::move(*source));
       }
+      if (layer_spec.priority == Priority::kResolution) layer.PutFinestLast();
       if (IsWorthBuilding(layer)) layers_.push_back(std::move(layer));
     }
     if (!layers_.empty()) return {};
@@ -283,6 +300,7 @@ class Builder {
           Warn(*layer.sources[i], "nothing of it is seen: later sources cover it all");
         }
       }
+      for (const Unmatched& unmatched : layer.unmatched) Warn(*unmatched.source, unmatched.reason);
       records.push_back(std::move(record));
     }
     const std::string now =

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 namespace belvedere {
 namespace {
@@ -40,6 +42,10 @@ uint8_t Byte(float value) {
   return static_cast<uint8_t>(std::clamp(value, 0.0f, 255.0f) + 0.5f);
 }
 
+double AboveEllipsoid_m(const SourceSpec& spec, double undulation_m) {
+  return spec.datum == VerticalDatum::kEgm96 ? undulation_m : spec.datum_m;
+}
+
 // What is still to be covered, position by position.
 struct Remaining {
   explicit Remaining(size_t count) : shares(count, 1.0f) {}
@@ -55,14 +61,22 @@ struct Remaining {
   std::vector<float> shares;
 };
 
+void ApplyFit(const std::optional<ColourFit>& fit, std::vector<float>& colours) {
+  if (!fit) return;
+  for (size_t i = 0; i < colours.size(); ++i) {
+    const float colour = std::clamp(colours[i], 0.0f, 255.0f);
+    colours[i] = static_cast<float>(fit->gain[i % 3]) * colour + static_cast<float>(fit->offset[i % 3]);
+  }
+}
+
 // Colours, multiplied by the share that is covered, as straight RGBA into the rows of a page.
-void WriteTexels(const LatticeRows& lattice, const std::vector<float>& colours, const Remaining& remaining,
+void WriteTexels(const LatticeRows& lattice, const std::vector<float>& colours, const std::vector<float>& shares,
                  std::vector<uint8_t>& texels) {
   size_t i = 0;
   for (const int row : lattice.rows) {
     uint8_t* out = &texels[4 * static_cast<size_t>(row) * static_cast<size_t>(kImageSide)];
     for (size_t column = 0; column < static_cast<size_t>(kImageSide); ++column, ++i, out += 4) {
-      const float alpha = 1.0f - remaining.shares[i];
+      const float alpha = 1.0f - shares[i];
       out[3] = Byte(255.0f * alpha);
       if (out[3] == 0) continue;
       const float scale = alpha == 1.0f ? 1.0f : 1.0f / alpha;
@@ -74,7 +88,9 @@ void WriteTexels(const LatticeRows& lattice, const std::vector<float>& colours, 
 }  // namespace
 
 Composite::Composite(LayerKind kind, const std::vector<RasterSource*>& sources, const Geoid& geoid)
-    : kind_(kind), geoid_(geoid) {
+    : kind_(kind), geoid_(geoid), void_fill_([this](size_t which, const LatticeRows& lattice, int level) {
+        return GroundOf(which, lattice, level);
+      }) {
   for (auto source = sources.rbegin(); source != sources.rend(); ++source) samplers_.emplace_back(**source, kind);
 }
 
@@ -86,25 +102,31 @@ bool Composite::MayCover(const SourceSampler& sampler, const LatticeRows& lattic
                      [&](double longitude_deg) { return Covers(box, longitude_deg, std::max(*south, box.south_deg)); });
 }
 
-Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, double spacing_deg) {
+Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, double spacing_deg, int level, size_t first) {
   const size_t columns = lattice.longitudes_deg.size();
   const size_t count = columns * lattice.latitudes_deg.size();
   const std::vector<double> undulation = geoid_.Heights(lattice.latitudes_deg, lattice.longitudes_deg);
   Heights heights{std::vector<double>(count, 0.0), std::vector<int32_t>(count, 0)};
   Remaining remaining(count);
-  for (SourceSampler& sampler : samplers_) {
+  for (size_t which = first; which < samplers_.size(); ++which) {
+    SourceSampler& sampler = samplers_[which];
     if (!MayCover(sampler, lattice)) continue;
     const Samples<double> samples = sampler.Sample<double>(lattice, spacing_deg);
     const SourceSpec& spec = sampler.source().spec();
     const int32_t quantum_mm = QuantumOfSource_mm(sampler.source().precision_m());
     bool used = false;
     for (size_t i = 0; i < count; ++i) {
+      if (!samples.void_weights.empty() && samples.void_weights[i] > 0 && remaining.shares[i] > 0) {
+        const double delta_m =
+            void_fill_.DeltaAt(which, sampler.source().georeference(), level, lattice.longitudes_deg[i % columns],
+                               lattice.latitudes_deg[i / columns]);
+        heights.metres[i] += static_cast<double>(remaining.shares[i] * samples.void_weights[i]) * delta_m;
+      }
       if (samples.weights[i] <= 0) continue;
-      const double datum_m = spec.datum == VerticalDatum::kEgm96 ? undulation[i] : spec.datum_m;
       const float part = remaining.Take(i, samples.weights[i]);
       used = true;
       if (part <= 0) continue;
-      heights.metres[i] += static_cast<double>(part) * (samples.values[i] + datum_m);
+      heights.metres[i] += static_cast<double>(part) * (samples.values[i] + AboveEllipsoid_m(spec, undulation[i]));
       int32_t& finest_mm = heights.quanta_mm[i];
       finest_mm = finest_mm == 0 ? quantum_mm : std::min(finest_mm, quantum_mm);
     }
@@ -115,12 +137,28 @@ Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, double spaci
   return heights;
 }
 
+VoidFill::Ground Composite::GroundOf(size_t which, const LatticeRows& lattice, int level) {
+  const double spacing_deg = std::ldexp(kTreeDegrees / kCells, -level);
+  const Samples<double> samples = samplers_[which].Sample<double>(lattice, spacing_deg, false);
+  const std::vector<double> undulation = geoid_.Heights(lattice.latitudes_deg, lattice.longitudes_deg);
+  const SourceSpec& spec = samplers_[which].source().spec();
+  VoidFill::Ground ground{{}, samples.values, HeightsAt(lattice, spacing_deg, level, which + 1).metres};
+  for (size_t i = 0; i < samples.weights.size(); ++i) {
+    ground.source_m[i] += AboveEllipsoid_m(spec, undulation[i]);
+    const bool is_void = !samples.void_weights.empty() && samples.void_weights[i] > 0;
+    ground.posts.push_back(samples.weights[i] > 0 ? DeltaGrid::Post::kValid
+                           : is_void              ? DeltaGrid::Post::kVoid
+                                                  : DeltaGrid::Post::kOutside);
+  }
+  return ground;
+}
+
 std::vector<int32_t> Composite::Heights_mm(Quadcode node) {
   const double spacing_deg = node.SizeDegrees() / kCells;
   const int32_t quantum_mm = QuantumOfLevel_mm(node);
   std::vector<int32_t> heights_mm(static_cast<size_t>(kElevationSide) * static_cast<size_t>(kElevationSide));
   for (const LatticeRows& lattice : PostLattice(node)) {
-    const Heights heights = HeightsAt(lattice, spacing_deg);
+    const Heights heights = HeightsAt(lattice, spacing_deg, node.level());
     const size_t columns = lattice.longitudes_deg.size();
     for (size_t j = 0; j < lattice.rows.size(); ++j) {
       int32_t* out = &heights_mm[static_cast<size_t>(lattice.rows[j] * kElevationSide)];
@@ -134,32 +172,59 @@ std::vector<int32_t> Composite::Heights_mm(Quadcode node) {
 }
 
 std::vector<double> Composite::ProbeHeights(Quadcode node) {
-  return HeightsAt(ProbeLattice(node), node.SizeDegrees() / (2 * kCells)).metres;
+  return HeightsAt(ProbeLattice(node), node.SizeDegrees() / (2 * kCells), node.level() + 1).metres;
+}
+
+Composite::Colours Composite::ColoursAt(const LatticeRows& lattice, double spacing_deg, size_t first) {
+  const size_t count = lattice.longitudes_deg.size() * lattice.latitudes_deg.size();
+  Colours colours{std::vector<float>(3 * count, 0.0f), {}, std::vector<bool>(samplers_.size(), false)};
+  Remaining remaining(count);
+  for (size_t which = first; which < samplers_.size() && remaining.Any(); ++which) {
+    SourceSampler& sampler = samplers_[which];
+    if (!MayCover(sampler, lattice)) continue;
+    Samples<float> samples = sampler.Sample<float>(lattice, spacing_deg);
+    ApplyFit(sampler.source().colour_fit(), samples.values);
+    for (size_t i = 0; i < count; ++i) {
+      if (samples.weights[i] <= 0) continue;
+      const float part = remaining.Take(i, samples.weights[i]);
+      for (size_t c = 0; c < 3; ++c)
+        colours.rgb[3 * i + c] += part * std::clamp(samples.values[3 * i + c], 0.0f, 255.0f);
+      colours.used[which] = true;
+    }
+  }
+  colours.shares = std::move(remaining.shares);
+  return colours;
 }
 
 std::vector<uint8_t> Composite::Texels(Quadcode node) {
   const double spacing_deg = node.SizeDegrees() / kImageInner;
   std::vector<uint8_t> texels(4 * static_cast<size_t>(kImageSide) * static_cast<size_t>(kImageSide), 0);
   for (const LatticeRows& lattice : TexelLattice(node)) {
-    const size_t count = lattice.longitudes_deg.size() * lattice.latitudes_deg.size();
-    std::vector<float> colours(3 * count, 0.0f);
-    Remaining remaining(count);
-    for (SourceSampler& sampler : samplers_) {
-      if (!MayCover(sampler, lattice)) continue;
-      const Samples<float> samples = sampler.Sample<float>(lattice, spacing_deg);
-      bool used = false;
-      for (size_t i = 0; i < count; ++i) {
-        if (samples.weights[i] <= 0) continue;
-        const float part = remaining.Take(i, samples.weights[i]);
-        for (size_t c = 0; c < 3; ++c) colours[3 * i + c] += part * std::clamp(samples.values[3 * i + c], 0.0f, 255.0f);
-        used = true;
-      }
-      if (used) sampler.source().SetUsed();
-      if (!remaining.Any()) break;
+    const Colours colours = ColoursAt(lattice, spacing_deg);
+    for (size_t which = 0; which < samplers_.size(); ++which) {
+      if (colours.used[which]) samplers_[which].source().SetUsed();
     }
-    WriteTexels(lattice, colours, remaining, texels);
+    WriteTexels(lattice, colours.rgb, colours.shares, texels);
   }
   return texels;
+}
+
+std::vector<ColourPair> Composite::ColourPairs(size_t place, const LatticeRows& lattice, double spacing_deg) {
+  constexpr float kOpaque = 0.99f;
+  const size_t which = samplers_.size() - 1 - place;
+  const Samples<float> own = samplers_[which].Sample<float>(lattice, spacing_deg, false);
+  const Colours below = ColoursAt(lattice, spacing_deg, which + 1);
+  std::vector<ColourPair> pairs;
+  for (size_t i = 0; i < own.weights.size(); ++i) {
+    const float covered = 1.0f - below.shares[i];
+    if (own.weights[i] < kOpaque || covered < kOpaque) continue;
+    ColourPair& pair = pairs.emplace_back();
+    for (size_t c = 0; c < 3; ++c) {
+      pair.source[c] = std::clamp(own.values[3 * i + c], 0.0f, 255.0f);
+      pair.below[c] = below.rgb[3 * i + c] / covered;
+    }
+  }
+  return pairs;
 }
 
 }  // namespace belvedere

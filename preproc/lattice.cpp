@@ -59,6 +59,18 @@ std::vector<LatticeRows> PostLattice(Quadcode node) {
   return groups.Take();
 }
 
+LatticeRows PostsAround(Quadcode node, int west, int south, int columns, int rows) {
+  const GridPoint corner = node.SouthWest();
+  const int64_t spacing = node.PostSpacing();
+  LatticeRows posts;
+  for (int i = west; i < west + columns; ++i) posts.longitudes_deg.push_back(LongitudeOfGrid(corner.x + i * spacing));
+  for (int j = south; j < south + rows; ++j) {
+    const int64_t y = int64_t{corner.y} + j * spacing;
+    if (y >= 0 && y <= kPole) Append(posts, LatitudeOfGrid(y), j);
+  }
+  return posts;
+}
+
 std::vector<LatticeRows> TexelLattice(Quadcode node) {
   const int level = node.level();
   const int64_t around = (int64_t{kTreeColumns} << level) * kImageInner;

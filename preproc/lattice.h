@@ -23,6 +23,9 @@ struct LatticeRows {
 
 // kElevationSide posts a side.
 std::vector<LatticeRows> PostLattice(Quadcode node);
+// Posts of the node's level, from west and south of its own south-west post on, which may be less than 0; rows say the
+// same of each latitude. What would lie beyond a pole is not there. REQUIRES: some row is not beyond a pole.
+LatticeRows PostsAround(Quadcode node, int west, int south, int columns, int rows);
 // kImageSide texels a side.
 std::vector<LatticeRows> TexelLattice(Quadcode node);
 // Centres of every 4th cell between posts, both ways: kCells / 4 a side.

@@ -3,6 +3,7 @@
 #include "preproc/height_histogram.h"
 #include "preproc/markup.h"
 #include "preproc/preview.h"
+#include "preproc/report.h"
 #include "runtime/base/iso_time.h"
 #include "runtime/earth/units.h"
 
@@ -46,17 +47,18 @@ double SpacingAt(int level, LayerKind kind) {
 
 std::string SourceTable(const std::vector<SourceRecord>& sources, LayerKind kind) {
   std::string out = "<h3>Sources, the best last</h3><table>" +
-                    Head(std::array<std::string_view, 8>{"", "source", "coordinate system", "datum", "nodata", "time",
-                                                         "outer extent", "finest level"}) +
+                    Head(std::array<std::string_view, 9>{"", "source", "coordinate system", "datum", "nodata", "time",
+                                                         "colours", "outer extent", "finest level"}) +
                     "<tbody>";
   for (size_t i = 0; i < std::min(sources.size(), kMostRows); ++i) {
     const SourceRecord& source = sources[i];
     out += fmt::format(
         "<tr><td><span class=\"swatch\" style=\"background:{}\"></span>{}</td><td>{}</td><td>{}</td><td>{}</td>"
-        "<td>{}</td><td>{}</td><td>{}</td><td>{} ({})</td></tr>",
+        "<td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{} ({})</td></tr>",
         Css(SourceColour(i)), i + 1, Escape(source.path), Escape(source.crs), Escape(source.datum),
         source.nodata ? fmt::format("{:.6g}", *source.nodata) : "", source.utc_s ? FormatIsoTime(*source.utc_s) : "",
-        Extent(source.extent), source.finest_level, Distance(SpacingAt(source.finest_level, kind)));
+        source.colour_fit ? FitText(*source.colour_fit) : "", Extent(source.extent), source.finest_level,
+        Distance(SpacingAt(source.finest_level, kind)));
   }
   return out + "</tbody></table>" + More(sources.size(), "sources");
 }

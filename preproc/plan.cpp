@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 namespace belvedere {
@@ -25,6 +27,18 @@ int64_t CountUnder(std::span<const PlannedSource> sources, Quadcode node) {
 }
 
 }  // namespace
+
+std::vector<size_t> PlacesByResolution(std::span<const PlannedSource> sources) {
+  constexpr double kThousandths = 1000;
+  std::vector<size_t> places(sources.size());
+  std::iota(places.begin(), places.end(), size_t{0});
+  const auto fineness = [&](size_t place) {
+    const PlannedSource& source = sources[place];
+    return std::pair{source.timed, -std::lround(kThousandths * std::log(source.spacing_deg))};
+  };
+  std::stable_sort(places.begin(), places.end(), [&](size_t a, size_t b) { return fineness(a) < fineness(b); });
+  return places;
+}
 
 int FinestLevel(double spacing_deg, LayerKind kind) {
   double spacing = kTreeDegrees / (kind == LayerKind::kElevation ? kCells : kImageInner);

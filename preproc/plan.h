@@ -11,8 +11,10 @@
 #include "runtime/earth/quadcode.h"
 #include "runtime/paging/dataset.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace belvedere {
 
@@ -26,7 +28,13 @@ double RefineTolerance_m(int source_level);
 struct PlannedSource {
   GeoBox extent;
   int finest_level = 0;
+  double spacing_deg = 1;  // between its pixels
+  bool timed = false;      // it is of one time of its layer
 };
+
+// The places of a layer's sources when the finest is to be last: those of one resolution, to a thousandth, as they
+// were, and those of a time over those without.
+std::vector<size_t> PlacesByResolution(std::span<const PlannedSource> sources);
 
 // The coarsest level whose posts or texels are no further apart than a source's pixels.
 int FinestLevel(double spacing_deg, LayerKind kind);

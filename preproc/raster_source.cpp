@@ -12,6 +12,8 @@ namespace {
 
 constexpr size_t kBlockPixels = static_cast<size_t>(kBlockSide) * static_cast<size_t>(kBlockSide);
 constexpr int kDeepestPyramid = 24;
+constexpr int kMostVoidsSide = 4096;  // pixels, where voids are looked for
+constexpr int kCoarsestVoids = 6;
 
 Block EmptyBlock(LayerKind kind) {
   Block block;
@@ -48,7 +50,9 @@ void ShrinkPixel(const Block& finer, const std::array<size_t, 4>& from, size_t c
       colour[c] += w * static_cast<float>(finer.colours[3 * at + c]);
   }
   if (weight <= 0 || count == 0) return;
-  out.coverage[to] = static_cast<uint8_t>(std::clamp(weight / static_cast<float>(count) + 0.5f, 1.0f, 255.0f));
+  // Of a domain, 255 says that nothing is missing, and is never rounded up to.
+  const float rounding = out.heights.empty() && out.colours.empty() ? 0.0f : 0.5f;
+  out.coverage[to] = static_cast<uint8_t>(std::clamp(weight / static_cast<float>(count) + rounding, 1.0f, 255.0f));
   if (!out.heights.empty()) out.heights[to] = height / weight;
   for (size_t c = 0; c < 3 && !out.colours.empty(); ++c) {
     out.colours[3 * to + c] = static_cast<uint8_t>(colour[c] / weight + 0.5f);
@@ -113,6 +117,7 @@ SourceRecord RasterSource::Record() const {
   record.extent = georeference_->extent();
   record.nodata = reader_->nodata();
   record.utc_s = spec_.utc_s;
+  record.colour_fit = colour_fit_;
   if (kind_ == LayerKind::kElevation) {
     record.datum = spec_.datum == VerticalDatum::kEgm96       ? "egm96"
                    : spec_.datum == VerticalDatum::kEllipsoid ? "ellipsoid"
@@ -129,17 +134,79 @@ const std::string& RasterSource::remark() const {
   return reader_->remark();
 }
 
-uint64_t RasterSource::KeyOf(int pyramid_level, int column, int row) const {
-  return static_cast<uint64_t>(number_) << 48 | static_cast<uint64_t>(pyramid_level) << 42 |
-         static_cast<uint64_t>(column) << 21 | static_cast<uint64_t>(row);
+uint64_t RasterSource::KeyOf(Plane plane, int pyramid_level, int column, int row) const {
+  static_assert(kDeepestPyramid < 32);
+  const auto level = static_cast<uint64_t>(pyramid_level) | (plane == Plane::kDomain ? 32U : 0U);
+  return static_cast<uint64_t>(number_) << 48 | level << 42 | static_cast<uint64_t>(column) << 21 |
+         static_cast<uint64_t>(row);
 }
 
 std::shared_ptr<const Block> RasterSource::GetBlock(int pyramid_level, int column, int row) {
-  if (auto found = cache_.Find(KeyOf(pyramid_level, column, row))) return found;
+  const uint64_t key = KeyOf(Plane::kPixels, pyramid_level, column, row);
+  if (auto found = cache_.Find(key)) return found;
   if (pyramid_level == 0) return ReadFromFile(column, row);
-  auto block = Shrink(pyramid_level, column, row);
-  cache_.Insert(KeyOf(pyramid_level, column, row), block);
+  auto block = Shrink(Plane::kPixels, pyramid_level, column, row);
+  cache_.Insert(key, block);
   return block;
+}
+
+std::shared_ptr<const Block> RasterSource::GetDomain(int pyramid_level, int column, int row) {
+  const uint64_t key = KeyOf(Plane::kDomain, pyramid_level, column, row);
+  if (auto found = cache_.Find(key)) return found;
+  auto block = pyramid_level == 0 ? DomainOf(column, row) : Shrink(Plane::kDomain, pyramid_level, column, row);
+  cache_.Insert(key, block);
+  return block;
+}
+
+std::shared_ptr<const Block> RasterSource::DomainOf(int column, int row) {
+  auto domain = std::make_shared<Block>();
+  domain->coverage = GetBlock(0, column, row)->coverage;
+  bool whole = true;
+  for (uint8_t& coverage : domain->coverage) {
+    coverage = coverage > 0 ? 255 : 0;
+    whole &= coverage != 0;
+  }
+  if (whole || kind_ != LayerKind::kElevation || !HasVoids()) return domain;
+  for (int y = 0; y < kBlockSide; ++y) {
+    for (int x = 0; x < kBlockSide; ++x) {
+      uint8_t& coverage = domain->coverage[static_cast<size_t>(y * kBlockSide + x)];
+      const int at_x = column * kBlockSide + x, at_y = row * kBlockSide + y;
+      if (coverage == 0 && at_x < width_ && at_y < height_ && Voids().Holds(at_x >> voids_level_, at_y >> voids_level_))
+        coverage = 255;
+    }
+  }
+  return domain;
+}
+
+const VoidMap& RasterSource::Voids() {
+  std::call_once(voids_found_, [this] { voids_ = FindVoids(); });
+  return voids_;
+}
+
+// On a level of the pyramid that is not too large, where a pixel with anything missing under it is missing, so that no
+// void is too small.
+VoidMap RasterSource::FindVoids() {
+  while (voids_level_ < std::min(pyramid_levels_, kCoarsestVoids) &&
+         std::max(width(voids_level_), height(voids_level_)) > kMostVoidsSide)
+    ++voids_level_;
+  const auto across = static_cast<size_t>(width(voids_level_));
+  VoidFinder finder(width(voids_level_), georeference_->wraps());
+  for (int top = 0; top < height_; top += kBlockSide) {
+    std::vector<uint8_t> missing(across * static_cast<size_t>(kBlockSide >> voids_level_), 0);
+    const int rows = std::min(kBlockSide, height_ - top);
+    for (int left = 0; left < width_; left += kBlockSide) {
+      const auto block = GetBlock(0, left / kBlockSide, top / kBlockSide);
+      const int columns = std::min(kBlockSide, width_ - left);
+      for (int y = 0; y < rows; ++y) {
+        uint8_t* const out = &missing[across * static_cast<size_t>(y >> voids_level_)];
+        for (int x = 0; x < columns; ++x)
+          out[(left + x) >> voids_level_] |= block->coverage[static_cast<size_t>(y * kBlockSide + x)] == 0;
+      }
+    }
+    const int last = (rows - 1) >> voids_level_;
+    for (int row = 0; row <= last; ++row) finder.AddRow({&missing[across * static_cast<size_t>(row)], across});
+  }
+  return finder.Finish();
 }
 
 std::shared_ptr<const Block> RasterSource::ReadFromFile(int column, int row) {
@@ -157,14 +224,15 @@ std::shared_ptr<const Block> RasterSource::ReadFromFile(int column, int row) {
   for (int at = 0; at < window_width; at += kBlockSide) {
     auto block = std::make_shared<const Block>(CutBlock(window, window_width, window_height, at, kind_));
     const int block_column = (from + at) / kBlockSide;
-    cache_.Insert(KeyOf(0, block_column, row), block);
+    cache_.Insert(KeyOf(Plane::kPixels, 0, block_column, row), block);
     if (block_column == column) wanted = std::move(block);
   }
   return wanted;
 }
 
-std::shared_ptr<const Block> RasterSource::Shrink(int pyramid_level, int column, int row) {
-  auto out = std::make_shared<Block>(EmptyBlock(kind_));
+std::shared_ptr<const Block> RasterSource::Shrink(Plane plane, int pyramid_level, int column, int row) {
+  const bool is_domain = plane == Plane::kDomain;
+  auto out = std::make_shared<Block>(is_domain ? Block{{}, {}, std::vector<uint8_t>(kBlockPixels)} : EmptyBlock(kind_));
   const int finer_width = width(pyramid_level - 1);
   const int finer_height = height(pyramid_level - 1);
   constexpr int kHalf = kBlockSide / 2;
@@ -172,7 +240,8 @@ std::shared_ptr<const Block> RasterSource::Shrink(int pyramid_level, int column,
     const int finer_column = 2 * column + quarter % 2;
     const int finer_row = 2 * row + quarter / 2;
     if (finer_column * kBlockSide >= finer_width || finer_row * kBlockSide >= finer_height) continue;
-    const auto finer = GetBlock(pyramid_level - 1, finer_column, finer_row);
+    const auto finer = is_domain ? GetDomain(pyramid_level - 1, finer_column, finer_row)
+                                 : GetBlock(pyramid_level - 1, finer_column, finer_row);
     for (int y = 0; y < kHalf; ++y) {
       for (int x = 0; x < kHalf; ++x) {
         const int columns = std::clamp(finer_width - (finer_column * kBlockSide + 2 * x), 0, 2);

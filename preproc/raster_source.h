@@ -11,6 +11,7 @@
 
 #include "preproc/georeference.h"
 #include "preproc/spec.h"
+#include "preproc/void_map.h"
 #include "runtime/base/mutex.h"
 #include "runtime/base/status.h"
 
@@ -19,6 +20,8 @@
 #include <cstdint>
 #include <list>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -71,6 +74,12 @@ class RasterSource {
   // Levels under which a source that goes round the Earth still closes on itself.
   int pyramid_levels() const { return pyramid_levels_; }
   std::shared_ptr<const Block> GetBlock(int pyramid_level, int column, int row);
+  // The pixels that are the source's own, as a block of coverage alone: 255 where all that lies under a pixel is valid,
+  // however transparent, or of elevation in a void, 0 where nothing is, between the two the share of it that is.
+  std::shared_ptr<const Block> GetDomain(int pyramid_level, int column, int row);
+
+  // Elevation: whether anything is missing within; the first call reads the whole source.
+  bool HasVoids() { return !Voids().empty(); }
 
   // What could not be read, if anything: the source is then to be left out.
   Status failure() const EXCLUDES_LOCK(failure_mutex_);
@@ -80,6 +89,9 @@ class RasterSource {
   const std::string& remark() const;
   // Whether any pixel is valid; reads the whole source.
   bool HasData();
+  // What is done to the colours of its pixels as pages are made. Set before any is.
+  const std::optional<ColourFit>& colour_fit() const { return colour_fit_; }
+  void SetColourFit(const ColourFit& fit) { colour_fit_ = fit; }
   bool used() const { return used_.load(std::memory_order_relaxed); }
   void SetUsed() { used_.store(true, std::memory_order_relaxed); }
   int64_t bytes_read() const { return bytes_read_.load(std::memory_order_relaxed); }
@@ -89,9 +101,13 @@ class RasterSource {
   static int ShrunkSide(int side, int level) {
     return static_cast<int>((int64_t{side} + (int64_t{1} << level) - 1) >> level);
   }
-  uint64_t KeyOf(int pyramid_level, int column, int row) const;
+  enum class Plane { kPixels, kDomain };
+  uint64_t KeyOf(Plane plane, int pyramid_level, int column, int row) const;
   std::shared_ptr<const Block> ReadFromFile(int column, int row);
-  std::shared_ptr<const Block> Shrink(int pyramid_level, int column, int row);
+  std::shared_ptr<const Block> Shrink(Plane plane, int pyramid_level, int column, int row);
+  std::shared_ptr<const Block> DomainOf(int column, int row);
+  const VoidMap& Voids();
+  VoidMap FindVoids();
   void Fail(Status status) EXCLUDES_LOCK(failure_mutex_);
 
   const SourceSpec spec_;
@@ -102,6 +118,10 @@ class RasterSource {
   std::unique_ptr<Georeference> georeference_;
   int width_ = 0, height_ = 0;
   int pyramid_levels_ = 0;
+  std::optional<ColourFit> colour_fit_;
+  int voids_level_ = 0;  // of the pyramid, that voids_ is of
+  std::once_flag voids_found_;
+  VoidMap voids_;  // once they are found
   std::atomic<bool> used_{false};
   std::atomic<int64_t> bytes_read_{0};
   mutable Mutex failure_mutex_;

@@ -26,6 +26,7 @@ json SourceJson(const SourceRecord& source) {
   if (source.nodata) out["nodata"] = *source.nodata;
   if (!source.datum.empty()) out["datum"] = source.datum;
   if (source.utc_s) out["time"] = FormatIsoTime(*source.utc_s);
+  if (source.colour_fit) out["colour_fit"] = {{"gain", source.colour_fit->gain}, {"offset", source.colour_fit->offset}};
   return out;
 }
 
@@ -99,6 +100,11 @@ void VerifyNode(const Dataset& dataset, int layer, Quadcode node, Verification& 
 
 }  // namespace
 
+std::string FitText(const ColourFit& fit) {
+  return fmt::format("times {:.3f}, {:.3f}, {:.3f} plus {:.1f}, {:.1f}, {:.1f}", fit.gain[0], fit.gain[1], fit.gain[2],
+                     fit.offset[0], fit.offset[1], fit.offset[2]);
+}
+
 std::string BuildReportJson(const BuildReport& report) {
   json layers = json::array();
   for (const auto& layer : report.layers) layers.push_back(LayerJson(layer));
@@ -133,10 +139,11 @@ std::string DescribeDataset(const Dataset& dataset) {
     for (const int64_t pages : layer.pages_per_level) text += fmt::format(" {}", pages);
     text += "\n";
     for (const SourceRecord& source : layer.sources) {
-      text += fmt::format("  source {}: {}, level {}, west {:.6g} south {:.6g} east {:.6g} north {:.6g}{}\n",
+      text += fmt::format("  source {}: {}, level {}, west {:.6g} south {:.6g} east {:.6g} north {:.6g}{}{}\n",
                           source.path, source.crs, source.finest_level, source.extent.west_deg, source.extent.south_deg,
                           source.extent.east_deg, source.extent.north_deg,
-                          source.utc_s ? ", time " + FormatIsoTime(*source.utc_s) : "");
+                          source.utc_s ? ", time " + FormatIsoTime(*source.utc_s) : "",
+                          source.colour_fit ? ", colours " + FitText(*source.colour_fit) : "");
     }
   }
   return text;

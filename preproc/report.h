@@ -15,6 +15,9 @@ namespace belvedere {
 std::string BuildReportJson(const BuildReport& report);
 std::string BuildReportLine(const BuildReport& report);
 
+// "times 1.020, 0.980, 1.000 plus 3.1, -2.0, 0.0", of red, green and blue.
+std::string FitText(const ColourFit& fit);
+
 std::string DescribeDataset(const Dataset& dataset);
 std::string DescribeDatasetJson(const Dataset& dataset);
 

@@ -13,7 +13,6 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kWidestShrink = 64;      // pixels of a pyramid level between positions, at most
 constexpr float kLeastCoverage = 0.499f;  // of a height, for it to count; half a pixel's worth
 constexpr float kWhole = 0.9995f;         // a coverage that only rounding keeps from 1
-constexpr double kMetresPerDegree = kEquatorialRadius_m * kRadiansPerDegree;
 
 // Position on the source, or none.
 double OnAxis(double position, int length) {
@@ -31,7 +30,9 @@ SourceSampler::SourceSampler(RasterSource& source, LayerKind kind)
     : source_(source),
       kind_(kind),
       channels_(kind == LayerKind::kElevation ? 1 : 3),
-      georeference_(source.georeference().Clone()) {}
+      georeference_(source.georeference().Clone()) {
+  if (source.spec().feather_m > 0) PrepareFeather();
+}
 
 // Pixels between positions, measured at the source's middle longitude, and the pyramid level to take them from.
 SourceSampler::Scale SourceSampler::ScaleAt(double latitude_deg, double spacing_deg) {
@@ -93,7 +94,17 @@ SourceSampler::Positions SourceSampler::PositionsOf(const LatticeRows& lattice, 
   return positions;
 }
 
-PixelWindow SourceSampler::MakeWindow(int pyramid_level, const AxisTaps& x, const AxisTaps& y, Edge edge) const {
+std::vector<double> SourceSampler::AxisAtLevel(std::vector<double> axis, int pyramid_level) {
+  for (double& position : axis) position = std::ldexp(position, -pyramid_level);
+  return axis;
+}
+
+bool SourceSampler::IsOnSource(const Positions& positions, size_t columns, size_t i) const {
+  const bool separable = georeference_->separable();
+  return !std::isnan(positions.x[separable ? i % columns : i]) && !std::isnan(positions.y[separable ? i / columns : i]);
+}
+
+PixelWindow SourceSampler::MakeWindow(int pyramid_level, const AxisTaps& x, const AxisTaps& y, Plane plane) const {
   PixelWindow window{x.lowest, y.lowest, x.length, y.length, channels_, {}};
   const size_t size = channels_ + 1;
   window.pixels.assign(static_cast<size_t>(x.length) * static_cast<size_t>(y.length) * size, 0.0f);
@@ -108,17 +119,17 @@ PixelWindow SourceSampler::MakeWindow(int pyramid_level, const AxisTaps& x, cons
     for (int i = 0; i < window.width; ++i, out += size) {
       const int wanted = window.x + i;
       const int column = wraps ? ((wanted % width) + width) % width : std::clamp(wanted, 0, width - 1);
-      if (edge == Edge::kEmpty && (row != window.y + j || (!wraps && column != wanted))) continue;
       if (column / kBlockSide != block_column || row / kBlockSide != block_row) {
         block_column = column / kBlockSide;
         block_row = row / kBlockSide;
-        block = source_.GetBlock(pyramid_level, block_column, block_row);
+        block = plane == Plane::kPixels ? source_.GetBlock(pyramid_level, block_column, block_row)
+                                        : source_.GetDomain(pyramid_level, block_column, block_row);
       }
       const auto at = static_cast<size_t>(row % kBlockSide * kBlockSide + column % kBlockSide);
       const float coverage = static_cast<float>(block->coverage[at]) / 255.0f;
-      if (kind_ == LayerKind::kElevation) {
+      if (plane == Plane::kPixels && kind_ == LayerKind::kElevation) {
         out[0] = block->heights[at] * coverage;
-      } else {
+      } else if (plane == Plane::kPixels) {
         for (size_t c = 0; c < 3; ++c) out[c] = static_cast<float>(block->colours[3 * at + c]) * coverage;
       }
       out[channels_] = coverage;
@@ -129,36 +140,29 @@ PixelWindow SourceSampler::MakeWindow(int pyramid_level, const AxisTaps& x, cons
 
 template <typename Number>
 std::vector<Number> SourceSampler::Filter(const Positions& positions, const Scale& scale, Kernel kernel,
-                                          Edge edge) const {
-  const auto at_level = [&scale](std::vector<double> axis) {
-    for (double& position : axis) position = std::ldexp(position, -scale.pyramid_level);
-    return axis;
-  };
+                                          Plane plane) const {
   const bool separable = georeference_->separable();
   const int period = georeference_->wraps() ? source_.width(scale.pyramid_level) : 0;
-  const AxisTaps x = MakeTaps(at_level(positions.x), scale.shrink_x, kernel, period);
-  const AxisTaps y = MakeTaps(at_level(positions.y), scale.shrink_y, kernel, 0);
+  const AxisTaps x = MakeTaps(AxisAtLevel(positions.x, scale.pyramid_level), scale.shrink_x, kernel, period);
+  const AxisTaps y = MakeTaps(AxisAtLevel(positions.y, scale.pyramid_level), scale.shrink_y, kernel, 0);
   if (x.length == 0 || y.length == 0) {
     const size_t count = separable ? positions.x.size() * positions.y.size() : positions.x.size();
     return std::vector<Number>(count * (channels_ + 1));
   }
-  const PixelWindow window = MakeWindow(scale.pyramid_level, x, y, edge);
+  const PixelWindow window = MakeWindow(scale.pyramid_level, x, y, plane);
   return separable ? ResampleGrid<Number>(window, x, y) : ResamplePoints<Number>(window, x, y);
 }
 
-// Towards the border of what is valid, the edge of the source included, the weight falls to 0 over feather_m: twice the
-// share of a tent that wide which lies on valid pixels, less the half that it has on the border itself.
-void SourceSampler::Feather(const Positions& positions, std::span<float> weights) {
-  const double feather_deg = source_.spec().feather_m / kMetresPerDegree;
-  const Scale scale = ScaleAt((extent().south_deg + extent().north_deg) / 2, feather_deg);
-  const std::vector<float> filtered = Filter<float>(positions, scale, Kernel::kTent, Edge::kEmpty);
+void SourceSampler::FindVoids(const Positions& positions, const Scale& scale, std::span<const float> weights,
+                              std::span<float> void_weights) const {
+  const std::vector<float> domain = Filter<float>(positions, scale, Kernel::kTent, Plane::kDomain);
   for (size_t i = 0; i < weights.size(); ++i) {
-    weights[i] *= std::clamp(2.0f * filtered[i * (channels_ + 1) + channels_] - 1.0f, 0.0f, 1.0f);
+    if (weights[i] == 0 && domain[2 * i + 1] >= kLeastCoverage) void_weights[i] = 1.0f;
   }
 }
 
 template <typename Number>
-Samples<Number> SourceSampler::Sample(const LatticeRows& lattice, double spacing_deg) {
+Samples<Number> SourceSampler::Sample(const LatticeRows& lattice, double spacing_deg, bool feathered) {
   const size_t columns = lattice.longitudes_deg.size();
   const size_t all_rows = lattice.latitudes_deg.size();
   Samples<Number> samples;
@@ -175,23 +179,36 @@ Samples<Number> SourceSampler::Sample(const LatticeRows& lattice, double spacing
     while (end < all_rows && (georeference_->separable() || ScaleAt(lattice.latitudes_deg[end], spacing_deg) == scale))
       ++end;
     const Positions positions = PositionsOf(lattice, row, end - row);
-    const auto filtered = Filter<Number>(positions, scale, heights ? Kernel::kTent : Kernel::kCubic, Edge::kRepeat);
+    const auto filtered = Filter<Number>(positions, scale, heights ? Kernel::kTent : Kernel::kCubic, Plane::kPixels);
     const size_t base = row * columns;
     const size_t count = (end - row) * columns;
+    bool missing = false;
     for (size_t i = 0; i < count; ++i) {
       // Positions off the source have no coverage.
       const Number* in = &filtered[i * (channels_ + 1)];
       const auto coverage = static_cast<float>(in[channels_]);
-      if (coverage < least_coverage) continue;
+      if (coverage < least_coverage) {
+        missing = missing || (heights && IsOnSource(positions, columns, i));
+        continue;
+      }
       for (size_t c = 0; c < channels_; ++c) samples.values[(base + i) * channels_ + c] = in[c] / in[channels_];
       samples.weights[base + i] = heights || coverage > kWhole ? 1.0f : coverage;
     }
-    if (source_.spec().feather_m > 0) Feather(positions, {&samples.weights[base], count});
+    if (missing && source_.HasVoids()) {
+      samples.void_weights.resize(samples.weights.size());
+      FindVoids(positions, scale, {&samples.weights[base], count}, {&samples.void_weights[base], count});
+    }
+    if (!feathered || source_.spec().feather_m <= 0) continue;
+    const std::vector<float> feather = FeatherOf(lattice, row, end - row, positions, scale);
+    for (size_t i = 0; i < count; ++i) {
+      samples.weights[base + i] *= feather[i];
+      if (!samples.void_weights.empty()) samples.void_weights[base + i] *= feather[i];
+    }
   }
   return samples;
 }
 
-template Samples<float> SourceSampler::Sample<float>(const LatticeRows&, double);
-template Samples<double> SourceSampler::Sample<double>(const LatticeRows&, double);
+template Samples<float> SourceSampler::Sample<float>(const LatticeRows&, double, bool);
+template Samples<double> SourceSampler::Sample<double>(const LatticeRows&, double, bool);
 
 }  // namespace belvedere

@@ -108,7 +108,8 @@ class Parser {
   Result<std::vector<LayerSpec>> ParseLayer(const toml::node& node) const {
     const toml::table* table = node.as_table();
     if (table == nullptr) return Error(node, "\"layer\" must be a table: write [[layer]]");
-    if (Status status = CheckKeys(*table, {"name", "kind", "source", "repeats"}); !status.ok()) return status;
+    if (Status status = CheckKeys(*table, {"name", "kind", "source", "repeats", "priority"}); !status.ok())
+      return status;
     LayerSpec layer;
     auto name = String(*table, "name");
     if (!name.ok()) return name.status();
@@ -120,6 +121,7 @@ class Parser {
       return Error(*table->get("kind"), "\"kind\" must be \"elevation\" or \"imagery\", here it is \"{}\"", *kind);
     }
     layer.kind = *kind == "elevation" ? LayerKind::kElevation : LayerKind::kImagery;
+    if (Status status = ParsePriority(*table, layer); !status.ok()) return status;
     const toml::array* sources = (*table)["source"].as_array();
     if (sources == nullptr || sources->empty()) {
       return Error(*table, "layer \"{}\" has no source: write [[layer.source]] with a path", layer.name);
@@ -132,6 +134,18 @@ class Parser {
     const auto repeats = ParseRepeats(*table, layer);
     if (!repeats.ok()) return repeats.status();
     return StepsOf(std::move(layer), *repeats);
+  }
+
+  Status ParsePriority(const toml::table& table, LayerSpec& layer) const {
+    const toml::node* node = table.get("priority");
+    if (node == nullptr) return {};
+    const auto priority = String(table, "priority");
+    if (!priority.ok()) return priority.status();
+    if (*priority != "order" && *priority != "resolution") {
+      return Error(*node, "\"priority\" must be \"order\" or \"resolution\", here it is \"{}\"", *priority);
+    }
+    layer.priority = *priority == "order" ? Priority::kOrder : Priority::kResolution;
+    return {};
   }
 
   Result<Repeats> ParseRepeats(const toml::table& table, const LayerSpec& layer) const {
@@ -155,8 +169,8 @@ class Parser {
   Result<SourceSpec> ParseSource(const toml::node& node, LayerKind kind) const {
     const toml::table* table = node.as_table();
     if (table == nullptr) return Error(node, "\"source\" must be a table: write [[layer.source]]");
-    if (Status status =
-            CheckKeys(*table, {"path", "zoom", "nodata", "crs", "georeference", "unit", "datum", "feather_m", "time"});
+    if (Status status = CheckKeys(*table, {"path", "zoom", "nodata", "crs", "georeference", "unit", "datum",
+                                           "feather_m", "time", "match_colour"});
         !status.ok()) {
       return status;
     }
@@ -186,6 +200,7 @@ class Parser {
     if (Status status = ParseGeoreference(*table, source); !status.ok()) return status;
     if (Status status = ParseHeightKeys(*table, kind, source); !status.ok()) return status;
     if (Status status = ParseTime(*table, kind, source); !status.ok()) return status;
+    if (Status status = ParseMatchColour(*table, kind, source); !status.ok()) return status;
     return source;
   }
 
@@ -200,6 +215,16 @@ class Parser {
     if (zoom && *zoom >= 0 && *zoom <= kFinestZoom) return std::optional<int>(static_cast<int>(*zoom));
     return Error(node == nullptr ? *table.get("path") : *node,
                  "tiles need a \"zoom\", the level that is read: a whole number from 0 to {}", kFinestZoom);
+  }
+
+  Status ParseMatchColour(const toml::table& table, LayerKind kind, SourceSpec& source) const {
+    const toml::node* node = table.get("match_colour");
+    if (node == nullptr) return {};
+    if (kind == LayerKind::kElevation) return Error(*node, "\"match_colour\" means nothing for elevation");
+    const auto value = node->value_exact<bool>();
+    if (!value) return Error(*node, "\"match_colour\" must be true or false, here it is {}", TypeName(*node));
+    source.match_colour = *value;
+    return {};
   }
 
   Status ParseTime(const toml::table& table, LayerKind kind, SourceSpec& source) const {
@@ -289,7 +314,8 @@ std::vector<LayerSpec> StepsOf(LayerSpec layer, Repeats repeats) {
     return steps;
   }
   for (const double utc_s : times) {
-    LayerSpec step{layer.name + "@" + FormatIsoTime(utc_s), layer.kind, {}, StepOf{layer.name, utc_s, repeats}};
+    LayerSpec step{
+        layer.name + "@" + FormatIsoTime(utc_s), layer.kind, {}, StepOf{layer.name, utc_s, repeats}, layer.priority};
     for (const bool timed : {false, true}) {
       for (const SourceSpec& source : layer.sources) {
         if (timed ? source.utc_s == utc_s : !source.utc_s) step.sources.push_back(source);

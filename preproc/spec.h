@@ -1,6 +1,7 @@
 // Build spec: which layers a dataset has and what each is made of, as read from a TOML file.
 //
-// Sources of a layer are in the order of the file: a later one wins where it has data. Every mistake in the file is one
+// Sources of a layer are in the order of the file: a later one wins where it has data, unless the layer's priority is
+// resolution, when a finer one does. Every mistake in the file is one
 // line that names the file, the line, the key and, for a key nobody knows, the nearest that is known.
 //
 // An imagery layer some of whose sources have a time changes with the time: it becomes one layer for each of the times,
@@ -36,13 +37,18 @@ struct SourceSpec {
   double datum_m = 0;  // for kOffset: height of the source's zero above the ellipsoid
   double feather_m = 0;
   std::optional<double> utc_s;  // imagery: when it was so; to the second
+  bool match_colour = false;    // imagery: its colours are fitted to those of what lies below it
 };
+
+// Which of a layer's sources wins.
+enum class Priority { kOrder, kResolution };
 
 struct LayerSpec {
   std::string name;
   LayerKind kind = LayerKind::kElevation;
   std::vector<SourceSpec> sources;
   std::optional<StepOf> step;
+  Priority priority = Priority::kOrder;
 };
 
 // One layer as the spec has it: itself, or its steps, the earliest first.

@@ -15,6 +15,7 @@
 #include "runtime/paging/layer_steps.h"
 #include "runtime/paging/page.h"
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -33,6 +34,11 @@ enum class LayerKind : uint8_t { kElevation = 1, kImagery = 2 };
 std::string_view LayerKindName(LayerKind kind);  // "elevation", "imagery"
 
 // What a layer was made of, as recorded when it was built.
+// What a source's colours, 0 to 255, were made to be: gain * colour + offset, of red, green and blue.
+struct ColourFit {
+  std::array<double, 3> gain{1, 1, 1}, offset{0, 0, 0};
+};
+
 struct SourceRecord {
   std::string path;  // as the spec wrote it
   std::string crs;   // short name, such as "EPSG:4326"
@@ -40,7 +46,8 @@ struct SourceRecord {
   std::optional<double> nodata;
   std::string datum;  // elevation: "egm96", "ellipsoid" or an offset in metres; imagery: empty
   int finest_level = 0;
-  std::optional<double> utc_s{};  // when it was so, if the spec said
+  std::optional<double> utc_s{};          // when it was so, if the spec said
+  std::optional<ColourFit> colour_fit{};  // imagery that was matched to what lies below it
 };
 
 struct LayerRecord {

@@ -19,6 +19,7 @@ json SourceToJson(const SourceRecord& source) {
               {"finest_level", source.finest_level}};
   if (source.nodata) out["nodata"] = *source.nodata;
   if (source.utc_s) out["time"] = FormatIsoTime(*source.utc_s);
+  if (source.colour_fit) out["colour_fit"] = {{"gain", source.colour_fit->gain}, {"offset", source.colour_fit->offset}};
   return out;
 }
 
@@ -55,6 +56,10 @@ SourceRecord SourceFromJson(const json& in) {
   source.datum = in.at("datum").get<std::string>();
   source.finest_level = in.at("finest_level").get<int>();
   if (in.contains("time")) source.utc_s = TimeFromJson(in.at("time"));
+  if (in.contains("colour_fit")) {
+    const json& fit = in.at("colour_fit");
+    source.colour_fit = {fit.at("gain").get<std::array<double, 3>>(), fit.at("offset").get<std::array<double, 3>>()};
+  }
   return source;
 }
 

@@ -2,6 +2,7 @@
 #include "preproc/build.h"
 
 #include "preproc/report.h"
+#include "tests/preproc/built_pages.h"
 #include "tests/preproc/made_raster.h"
 
 #include <gtest/gtest.h>
@@ -14,17 +15,6 @@ namespace belvedere {
 namespace {
 
 using namespace testing_rasters;
-
-std::array<int, 4> TexelAt(const Dataset& dataset, double latitude, double longitude, int max_level = kMaxLevel) {
-  const Quadcode node = dataset.FinestContaining(0, latitude, longitude, max_level);
-  const auto page = dataset.ReadImage(0, node);
-  EXPECT_TRUE(page.ok()) << page.message();
-  const GeoBox box = node.Box();
-  const int column = kImageGutter + static_cast<int>((longitude - box.west_deg) / node.SizeDegrees() * kImageInner);
-  const int row = kImageGutter + static_cast<int>((latitude - box.south_deg) / node.SizeDegrees() * kImageInner);
-  const uint8_t* texel = &(*page)->texels[static_cast<size_t>(4 * (row * kImageSide + column))];
-  return {texel[0], texel[1], texel[2], texel[3]};
-}
 
 TEST(BuildImagery, ImageryHonoursAlphaMaskAndPalette) {
   const std::string folder = FreshFolder("alpha");

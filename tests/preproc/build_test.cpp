@@ -3,6 +3,7 @@
 #include "preproc/plan.h"
 #include "preproc/report.h"
 #include "runtime/earth/geoid.h"
+#include "tests/preproc/built_pages.h"
 #include "tests/preproc/made_raster.h"
 
 #include <gtest/gtest.h>
@@ -31,40 +32,10 @@ std::string Flat(const std::string& path, double value, const std::array<double,
                {.width = width, .height = height, .affine = affine, .value = [=](int, int, int) { return value; }});
 }
 
-double HeightAt(const Dataset& dataset, double latitude, double longitude) {
-  const Quadcode node = dataset.FinestContaining(0, latitude, longitude);
-  const auto page = dataset.ReadElevation(0, node);
-  EXPECT_TRUE(page.ok()) << page.message();
-  return page.ok() ? BilinearHeight(**page, node, latitude, longitude) : 0;
-}
-
 double Geoid(double latitude, double longitude) {
   static const auto geoid = Geoid::LoadEgm96();
   EXPECT_TRUE(geoid.ok()) << geoid.message();
   return (*geoid)->Height(latitude, longitude);
-}
-
-// Every post that two pages of a level hold, aprons included, is the same in both.
-void ExpectSharedPosts(const Dataset& dataset) {
-  for (const uint64_t word : dataset.Nodes(0)) {
-    const Quadcode node = *Quadcode::FromWord(word);
-    const auto page = dataset.ReadElevation(0, node);
-    ASSERT_TRUE(page.ok()) << page.message();
-    for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}, std::pair{1, 1}}) {
-      if (node.row() + dy >= (int64_t{kTreeRows} << node.level())) continue;
-      const Quadcode other = Quadcode::FromColumnRow(node.level(), node.column() + dx, node.row() + dy);
-      if (!dataset.Exists(0, other)) continue;
-      const auto theirs = dataset.ReadElevation(0, other);
-      ASSERT_TRUE(theirs.ok());
-      for (int row = dy * kCells - kApron; row < kPosts + kApron; ++row) {
-        for (int column = dx * kCells - kApron; column < kPosts + kApron; ++column) {
-          if (row - dy * kCells >= kPosts + kApron || column - dx * kCells >= kPosts + kApron) continue;
-          ASSERT_EQ((*page)->at(column, row), (*theirs)->at(column - dx * kCells, row - dy * kCells))
-              << node.ToString() << " " << other.ToString() << " " << column << " " << row;
-        }
-      }
-    }
-  }
 }
 
 TEST(Build, SharedPostsAreTheSameBitsEverywhere) {

@@ -54,5 +54,17 @@ TEST(Plan, BoxesOverlapWhateverTheirTurn) {
   EXPECT_FALSE(Overlap({0, 0, 45, 45}, {0, 45, 45, 90}));
 }
 
+TEST(Plan, ByResolutionTheFinestIsLastAndTiesStayAsTheyWere) {
+  const auto places = [](const std::vector<PlannedSource>& sources) { return PlacesByResolution(sources); };
+  const PlannedSource coarse{{}, 2, 0.1, false}, fine{{}, 5, 0.01, false}, as_fine{{}, 5, 0.0100001, false};
+  const PlannedSource finest{{}, 8, 0.001, false}, timed{{}, 3, 0.05, true};
+  EXPECT_EQ(places({finest, fine, coarse}), (std::vector<size_t>{2, 1, 0}));
+  EXPECT_EQ(places({coarse, fine, finest}), (std::vector<size_t>{0, 1, 2}));
+  EXPECT_EQ(places({fine, coarse, as_fine, fine}), (std::vector<size_t>{1, 0, 2, 3}));
+  EXPECT_EQ(places({as_fine, fine, coarse}), (std::vector<size_t>{2, 0, 1}));
+  EXPECT_EQ(places({timed, finest, coarse}), (std::vector<size_t>{2, 1, 0}))
+      << "what has a time lies over what has none";
+}
+
 }  // namespace
 }  // namespace belvedere

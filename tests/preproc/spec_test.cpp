@@ -198,6 +198,44 @@ TEST(Spec, WrongTimesAreSaid) {
   }
 }
 
+TEST(Spec, PriorityIsByOrderUnlessResolutionIsAskedFor) {
+  const auto text = [](const std::string& key, const std::string& more = "") {
+    return "[[layer]]\nname = \"i\"\nkind = \"imagery\"\n" + key + "\n[[layer.source]]\npath = \"a\"\n" + more;
+  };
+  const auto priority = [&](const std::string& key, const std::string& more = "") {
+    const auto spec = ParseSpec(text(key, more), "dir/earth.toml");
+    EXPECT_TRUE(spec.ok()) << spec.message();
+    return spec.ok() ? spec->layers.back().priority : Priority::kOrder;
+  };
+  EXPECT_EQ(priority(""), Priority::kOrder);
+  EXPECT_EQ(priority("priority = \"order\""), Priority::kOrder);
+  EXPECT_EQ(priority("priority = \"resolution\""), Priority::kResolution);
+  EXPECT_EQ(priority("priority = \"resolution\"", "time = \"2004-01-01\"\n"), Priority::kResolution) << "of every step";
+  const std::string message = Message(text("priority = \"age\""));
+  for (const char* part : {"dir/earth.toml:4:", "\"priority\"", "\"resolution\"", "\"age\""})
+    EXPECT_TRUE(Has(message, part)) << message;
+  EXPECT_TRUE(Has(Message(text("priority = 1")), "must be a string"));
+  EXPECT_TRUE(Has(Message(text("priorty = \"order\"")), "\"priority\""));
+}
+
+TEST(Spec, ColoursAreMatchedWhereThatIsAskedFor) {
+  const auto text = [](const std::string& kind, const std::string& key) {
+    return "[[layer]]\nname = \"i\"\nkind = \"" + kind + "\"\n[[layer.source]]\npath = \"a\"\n" + key + "\n";
+  };
+  for (const auto& [key, wanted] :
+       {std::pair{"", false}, {"match_colour = true", true}, {"match_colour = false", false}}) {
+    const auto spec = ParseSpec(text("imagery", key), "dir/earth.toml");
+    ASSERT_TRUE(spec.ok()) << spec.message();
+    EXPECT_EQ(spec->layers[0].sources[0].match_colour, wanted) << key;
+  }
+  const std::string wrong_type = Message(text("imagery", "match_colour = \"yes\""));
+  for (const char* part : {"dir/earth.toml:6:", "\"match_colour\"", "true or false", "a string"})
+    EXPECT_TRUE(Has(wrong_type, part)) << wrong_type;
+  EXPECT_TRUE(
+      Has(Message(text("elevation", "match_colour = true")), ":6: \"match_colour\" means nothing for elevation"));
+  EXPECT_TRUE(Has(Message(text("imagery", "match_color = true")), "\"match_colour\""));
+}
+
 TEST(Spec, EachTimeCountsAsALayer) {
   std::string text = "[[layer]]\nname = \"i\"\nkind = \"imagery\"\n";
   for (int year = 1700; year <= 1700 + kMaxDatasetLayers; ++year) {
