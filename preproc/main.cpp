@@ -72,7 +72,7 @@ int RunVerify(const std::string& path) {
   if (!found.problems.empty())
     return Fail(
         fmt::format("{}: {} of {} pages or rules are bad; build it again", path, found.problems.size(), found.pages));
-  fmt::print("{}: all {} pages are good\n", path, found.pages);
+  fmt::print("{}: all {} pages are good, digest {:08x}\n", path, found.pages, found.digest);
   return 0;
 }
 

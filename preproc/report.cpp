@@ -1,6 +1,8 @@
 #include "preproc/report.h"
 
 #include "runtime/base/iso_time.h"
+#include "runtime/paging/dataset_store.h"
+#include "runtime/paging/page_codec.h"
 
 #include <nlohmann/json.hpp>
 
@@ -76,6 +78,8 @@ void CompareBorders(const Dataset& dataset, int layer, Quadcode node, const Elev
 void VerifyNode(const Dataset& dataset, int layer, Quadcode node, Verification& out) {
   const LayerRecord& record = dataset.layers()[static_cast<size_t>(layer)];
   ++out.pages;
+  out.digest = Crc32c(dataset.ReadRaw(layer, node).value_or(std::vector<uint8_t>()),
+                      Crc32c(store::MakeKey(layer, node.word()), out.digest));
   if (!node.is_root()) {
     if (!dataset.Exists(layer, node.Parent())) {
       out.problems.push_back(fmt::format("layer {}: quadnode {} has no parent", record.name, node.ToString()));

@@ -23,6 +23,7 @@ std::string DescribeDatasetJson(const Dataset& dataset);
 
 struct Verification {
   int64_t pages = 0;
+  uint32_t digest = 0;  // CRC-32C of layers, quadcodes and stored bytes: the same where the pages are, however stored
   std::vector<std::string> problems;  // one line each
 };
 // Reads and checks every page; that siblings exist together, and that level 0 is whole; and that posts which neighbours

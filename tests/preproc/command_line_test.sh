@@ -63,6 +63,7 @@ expect 0 spec.toml --out dataset --no-report
 expect 1 spec.toml --out dataset --report missing/report.html
 grep -q 'is built, but not its report' "$folder/err" || fail "a report that cannot be written: $(cat "$folder/err")"
 expect 0 verify dataset
+grep -q "all 64 pages are good, digest [0-9a-f]\{8\}$" "$folder/out" || fail "verify says: $(cat "$folder/out")"
 
 expect 2 export dataset --layer imagery
 expect 2 export dataset --layer imagery --out a.tif --level 23
