@@ -1,28 +1,24 @@
 #include "preproc/build.h"
 
 #include "preproc/colour_match.h"
-#include "preproc/composite.h"
-#include "preproc/deltas_from_children.h"
-#include "preproc/page_sink.h"
-#include "preproc/plan.h"
-#include "preproc/progress.h"
-#include "preproc/raster_source.h"
+#include "preproc/layer_builder.h"
+#include "preproc/resumed_pages.h"
 #include "preproc/source_path.h"
-#include "preproc/surface_error.h"
+#include "preproc/source_settings.h"
 #include "runtime/base/log.h"
 #include "runtime/earth/geoid.h"
 #include "runtime/paging/dataset_writer.h"
-#include "runtime/paging/page_codec.h"
 
 #include <fmt/chrono.h>
 #include <gdal_priv.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <ctime>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -34,113 +30,12 @@ namespace {
 
 constexpr int64_t kGdalCacheBytes = int64_t{64} << 20;
 
-struct OpenLayer {
-  LayerSpec spec;
-  std::vector<std::unique_ptr<RasterSource>> sources;
-  std::vector<PlannedSource> plan;
-  std::vector<Unmatched> unmatched;
-
-  void PutFinestLast() {
-    OpenLayer sorted;
-    for (const size_t place : PlacesByResolution(plan)) {
-      sorted.sources.push_back(std::move(sources[place]));
-      sorted.plan.push_back(plan[place]);
-    }
-    sources = std::move(sorted.sources);
-    plan = std::move(sorted.plan);
-  }
-
-  std::vector<RasterSource*> pointers() const {
-    std::vector<RasterSource*> out;
-    out.reserve(sources.size());
-    for (const auto& source : sources) out.push_back(source.get());
-    return out;
-  }
-};
-
 bool AnyNamesServer(const BuildSpec& spec) {
   return std::any_of(spec.layers.begin(), spec.layers.end(), [](const LayerSpec& layer) {
     return std::any_of(layer.sources.begin(), layer.sources.end(),
                        [](const SourceSpec& source) { return NamesServer(source.path); });
   });
 }
-
-// Makes the pages of one layer, from any of the workers.
-class LayerBuilder {
- public:
-  LayerBuilder(int number, const OpenLayer& layer, const Geoid& geoid, PageSink& sink, Progress* progress)
-      : number_(number), layer_(layer), sink_(sink), progress_(progress), composites_([&layer, &geoid] {
-          return std::make_unique<Composite>(layer.spec.kind, layer.pointers(), geoid);
-        }) {}
-
-  void BuildTree(Quadcode root) {
-    if (layer_.spec.kind == LayerKind::kElevation) {
-      BuildElevation(root);
-    } else {
-      BuildImage(root);
-    }
-  }
-
- private:
-  bool Stopped() const {
-    return sink_.failed() ||
-           std::any_of(layer_.sources.begin(), layer_.sources.end(), [](const auto& s) { return !s->failure().ok(); });
-  }
-
-  void BuildImage(Quadcode node) {
-    if (Stopped()) return;
-    if (node.level() < SourceLevel(layer_.plan, node)) {
-      tbb::task_group children;
-      for (int which = 0; which < 4; ++which) children.run([this, node, which] { BuildImage(node.Child(which)); });
-      children.wait();
-    }
-    sink_.Put(number_, node, EncodeImage(composites_.local()->Texels(node)));
-    CountDone(node, node.level());
-  }
-
-  BoundedPage BuildElevation(Quadcode node) {
-    auto page = std::make_shared<ElevationPage>();
-    page->heights_mm = composites_.local()->Heights_mm(node);
-    const int source_level = SourceLevel(layer_.plan, node);
-    if (Stopped()) return {page, CellDeviations(static_cast<size_t>(kCells) * kCells)};
-    CellDeviations deviations;
-    if (node.level() < source_level || NeedsRefinement(*page, node, source_level)) {
-      std::array<BoundedPage, 4> finer;
-      tbb::task_group children;
-      for (size_t which = 0; which < 4; ++which) {
-        children.run(
-            [this, node, which, &finer] { finer[which] = BuildElevation(node.Child(static_cast<int>(which))); });
-      }
-      children.wait();
-      deviations = BoundPage(*page, &finer);
-      page->deltas = DeltasFromChildren(node, *page, finer);
-    } else {
-      deviations = BoundPage(*page, nullptr);
-    }
-    sink_.Put(number_, node, EncodeElevation(*page));
-    CountDone(node, source_level);
-    return {std::move(page), std::move(deviations)};
-  }
-
-  bool NeedsRefinement(const ElevationPage& page, Quadcode node, int source_level) {
-    if (node.level() >= std::min(source_level + kRefineLevels, kMaxLevel)) return false;
-    const std::vector<double> probes = composites_.local()->ProbeHeights(node);
-    return ShareBeyond(page, probes, RefineTolerance_m(source_level)) > kRefineShare;
-  }
-
-  // Only pages that the plan counted.
-  void CountDone(Quadcode node, int source_level) {
-    if (progress_ == nullptr) return;
-    if (node.is_root() || node.level() <= std::max(source_level, SourceLevel(layer_.plan, node.Parent())))
-      progress_->Done();
-  }
-
-  const int number_;
-  const OpenLayer& layer_;
-  PageSink& sink_;
-  Progress* const progress_;
-  tbb::enumerable_thread_specific<std::unique_ptr<Composite>> composites_;
-};
 
 class Builder {
  public:
@@ -163,13 +58,18 @@ class Builder {
       const double round_s = clock_.NowSeconds();
       BlockCache cache(options_.cache_bytes);
       if (Status status = OpenSources(cache); !status.ok()) return status;
-      const size_t left_out = excluded_.size();  // what could not be opened is in no page
-      const double opened_s = clock_.NowSeconds();
-      auto writer = DatasetWriter::Create(options_.out);
+      if (made_of_.empty()) made_of_ = MadeOf(**geoid);
+      auto writer = StartWriter();
       if (!writer.ok()) return writer.status();
+      if (TakeNotes((*writer)->notes())) {
+        layers_.clear();
+        if (Status status = OpenSources(cache); !status.ok()) return status;
+      }
       for (OpenLayer& layer : layers_) {
         if (layer.spec.kind == LayerKind::kImagery) layer.unmatched = MatchColours(layer.pointers(), **geoid);
       }
+      const size_t left_out = excluded_.size();  // what could not be opened is in no page
+      const double opened_s = clock_.NowSeconds();
       if (Status status = MakePages(**geoid, **writer); !status.ok()) return status;
       ExcludeUseless();
       const double made_s = clock_.NowSeconds();
@@ -196,9 +96,55 @@ class Builder {
   }
 
   void Exclude(const LayerSpec& layer, const SourceSpec& source, const std::string& reason) {
-    if (!excluded_.insert(KeyOf(layer, source)).second) return;
+    if (!excluded_.insert({KeyOf(layer, source), reason}).second) return;
     report_.skipped.push_back({source.written_path, reason});
     LogWarning("{}: skipped: {}", source.path, reason);
+  }
+
+  // All that the pages depend on. What cannot be opened counts too: later it may be there.
+  std::string MadeOf(const Geoid& geoid) const {
+    std::string text = fmt::format("version {}, GDAL {}\n{}", kDatasetVersion, GDALVersionInfo("RELEASE_NAME"),
+                                   StateOfFiles({"/proc/self/exe", geoid.path()}));
+    for (const LayerSpec& layer : spec_.layers) {
+      text += fmt::format("{} {} {}\n", LayerKindName(layer.kind), layer.name, static_cast<int>(layer.priority));
+      for (const SourceSpec& source : layer.sources) text += SettingsToJson(source) + "\n";
+    }
+    for (const OpenLayer& layer : layers_) {
+      text += layer.spec.name + "\n";
+      for (const auto& source : layer.sources) text += source->state();
+    }
+    return text;
+  }
+
+  Result<std::unique_ptr<DatasetWriter>> StartWriter() {
+    if (options_.fresh && report_.rounds == 1) {
+      if (Status status = DatasetWriter::Discard(options_.out); !status.ok()) return status;
+    }
+    return DatasetWriter::Create(options_.out, made_of_);
+  }
+
+  // What a build that goes on from this one would not find out again.
+  std::string Notes() const {
+    nlohmann::json skipped = nlohmann::json::object(), seen = nlohmann::json::array();
+    for (const auto& [key, reason] : excluded_) skipped[key] = reason;
+    for (const std::string& key : SeenKeys()) seen.push_back(key);
+    return nlohmann::json{{"skipped", skipped}, {"seen", seen}}.dump(-1, ' ', true,
+                                                                     nlohmann::json::error_handler_t::replace);
+  }
+
+  // Whether sources are left out that were opened.
+  bool TakeNotes(const std::string& text) {
+    if (text.empty()) return false;
+    const auto notes = nlohmann::json::parse(text);
+    for (const auto& key : notes.at("seen")) seen_before_.insert(key.get<std::string>());
+    const size_t before = excluded_.size();
+    for (const LayerSpec& layer : spec_.layers) {
+      for (const SourceSpec& source : layer.sources) {
+        const auto found = notes.at("skipped").find(KeyOf(layer, source));
+        if (found != notes.at("skipped").end()) Exclude(layer, source, found->get<std::string>());
+      }
+    }
+    return excluded_.size() > before;
   }
 
   // A step that has lost all sources of its own time is none.
@@ -235,13 +181,17 @@ class Builder {
   Status MakePages(const Geoid& geoid, DatasetWriter& writer) {
     int64_t planned = 0;
     for (const OpenLayer& layer : layers_) planned += CountNodes(layer.plan);
-    PageSink sink(writer);
+    const ResumedPages resumed(writer, static_cast<int>(layers_.size()));
+    report_.resumed = resumed.pages();
+    if (report_.resumed > 0)
+      LogInfo("{}: goes on with {} pages of the build that was interrupted", options_.out, report_.resumed);
+    PageSink sink(writer, options_.batch_bytes, [this] { return Notes(); });
     std::optional<Progress> progress;
     if (options_.show_progress)
       progress.emplace(planned, clock_, [&sink] { return Progress::Written{sink.pages(), sink.bytes()}; });
     std::vector<std::unique_ptr<LayerBuilder>> builders;
     for (size_t i = 0; i < layers_.size(); ++i) {
-      builders.push_back(std::make_unique<LayerBuilder>(static_cast<int>(i), layers_[i], geoid, sink,
+      builders.push_back(std::make_unique<LayerBuilder>(static_cast<int>(i), layers_[i], geoid, sink, &resumed,
                                                         progress ? &*progress : nullptr));
     }
     const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(jobs_));
@@ -272,16 +222,19 @@ class Builder {
     }
   }
 
-  // In any step, of a source that is in several.
-  bool IsSeen(const std::string& key) const {
-    return std::any_of(layers_.begin(), layers_.end(), [&](const OpenLayer& layer) {
-      return std::any_of(layer.sources.begin(), layer.sources.end(), [&](const auto& source) {
-        return source->used() && KeyOf(layer.spec, source->spec()) == key;
-      });
-    });
+  // Sources of which something is seen, in any step where they are in several.
+  std::set<std::string> SeenKeys() const {
+    std::set<std::string> keys = seen_before_;
+    for (const OpenLayer& layer : layers_) {
+      for (const auto& source : layer.sources) {
+        if (source->used()) keys.insert(KeyOf(layer.spec, source->spec()));
+      }
+    }
+    return keys;
   }
 
   Status Finish(const Geoid& geoid, DatasetWriter& writer) {
+    const std::set<std::string> seen = SeenKeys();
     std::vector<LayerRecord> records;
     for (const OpenLayer& layer : layers_) {
       LayerRecord record;
@@ -296,7 +249,7 @@ class Builder {
         record.sources.back().finest_level = layer.plan[i].finest_level;
         report_.bytes_read += layer.sources[i]->bytes_read();
         if (!layer.sources[i]->remark().empty()) Warn(*layer.sources[i], layer.sources[i]->remark());
-        if (!IsSeen(KeyOf(layer.spec, layer.sources[i]->spec()))) {
+        if (!seen.contains(KeyOf(layer.spec, layer.sources[i]->spec()))) {
           Warn(*layer.sources[i], "nothing of it is seen: later sources cover it all");
         }
       }
@@ -327,7 +280,9 @@ class Builder {
   const BuildOptions& options_;
   const Clock& clock_;
   const int jobs_;
-  std::set<std::string> excluded_;  // layer and source
+  std::map<std::string, std::string> excluded_;  // layer and source, and why
+  std::set<std::string> seen_before_;            // by the build that this one goes on from
+  std::string made_of_;
   std::vector<OpenLayer> layers_;
   BuildReport report_;
 };

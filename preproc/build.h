@@ -4,6 +4,9 @@
 // sources alone, so no page waits for a neighbour. A source that turns out to be unreadable, or that covers nothing, is
 // left out and the build starts over without it, so that a dataset never holds half a source.
 //
+// A build that was killed is gone on with: pages that it had written are taken over where spec, sources, their files'
+// sizes and times, and the program are the same. The dataset has the same pages as if nothing had happened.
+//
 // Threads: blocks the caller; uses `jobs` workers and one writer.
 #pragma once
 
@@ -26,8 +29,10 @@ struct SourceRemark {
 
 struct BuildOptions {
   std::string out;
-  int jobs = 0;                            // 0: as many as the machine has cores
-  size_t cache_bytes = size_t{384} << 20;  // of source pixels
+  int jobs = 0;                             // 0: as many as the machine has cores
+  size_t cache_bytes = size_t{384} << 20;   // of source pixels
+  int64_t batch_bytes = int64_t{32} << 20;  // of pages, after which a killed build is gone on with from there
+  bool fresh = false;                       // throws away what a killed build has left
   bool show_progress = true;
 };
 
@@ -37,6 +42,7 @@ struct BuildReport {
   int rounds = 0;  // more than one where pages were made with sources that then had to be left out
   int jobs = 0;
   int64_t pages = 0;
+  int64_t resumed = 0;     // pages of them that were taken over from a build that was interrupted
   int64_t bytes = 0;       // of the store on disk
   int64_t bytes_read = 0;  // of source pixels, unpacked
   std::vector<LayerRecord> layers;

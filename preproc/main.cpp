@@ -105,6 +105,7 @@ int main(int argc, char** argv) {
   app.add_option("SPEC", spec_path, "what to build: a TOML file of layers and their sources");
   app.add_option("--out", options.out, "folder of the dataset; one that is there is replaced when the build succeeds");
   app.add_option("--jobs", options.jobs, "workers (default: one for each core)")->check(CLI::Range(1, 1024));
+  app.add_flag("--fresh", options.fresh, "do not go on with a build that was interrupted");
   PageOptions page;
   CLI::Option* report = app.add_option(
       "--report", page.path, "where to write a page that shows what was built (default: DATASET/report.html)");

@@ -10,6 +10,8 @@
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <functional>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -17,10 +19,15 @@ namespace belvedere {
 
 class PageSink {
  public:
-  explicit PageSink(DatasetWriter& writer);
+  // batch_bytes: of a transaction. notes: what the writer keeps with each; asked for on the writing thread.
+  PageSink(DatasetWriter& writer, int64_t batch_bytes, std::function<std::string()> notes);
   ~PageSink();
 
-  void Put(int layer, Quadcode node, std::vector<uint8_t> value) EXCLUDES_LOCK(mutex_);
+  // Pages come into the dataset in the order in which they are put. deviations: empty where none are kept.
+  void Put(int layer, Quadcode node, std::vector<uint8_t> value, std::vector<uint8_t> deviations = {})
+      EXCLUDES_LOCK(mutex_);
+  // Nothing more will be written, for a reason that lies elsewhere.
+  void Fail(Status status) EXCLUDES_LOCK(mutex_);
   // Waits until everything is written.
   Status Close() EXCLUDES_LOCK(mutex_);
   // Something could not be written: nothing more will be.
@@ -32,12 +39,14 @@ class PageSink {
   struct Item {
     int layer = 0;
     Quadcode node;
-    std::vector<uint8_t> value;
+    std::vector<uint8_t> value, deviations;
   };
   void Run() EXCLUDES_LOCK(mutex_);
   Status Write(const Item& item);
 
   DatasetWriter& writer_;
+  const int64_t batch_bytes_;
+  const std::function<std::string()> notes_;
   int64_t uncommitted_bytes_ = 0;  // the writing thread's
   std::atomic<bool> failed_{false};
   std::atomic<int64_t> pages_{0}, bytes_{0};

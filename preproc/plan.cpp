@@ -15,17 +15,6 @@ namespace {
 // Pixels that are a hair closer than posts do not ask for another level.
 constexpr double kSpacingSlack = 1.001;
 
-int64_t CountUnder(std::span<const PlannedSource> sources, Quadcode node) {
-  std::vector<PlannedSource> here;
-  const GeoBox box = node.Box();
-  std::copy_if(sources.begin(), sources.end(), std::back_inserter(here), [&](const PlannedSource& source) {
-    return source.finest_level > node.level() && Overlap(source.extent, box);
-  });
-  int64_t count = 1;
-  for (int which = 0; which < 4 && !here.empty(); ++which) count += CountUnder(here, node.Child(which));
-  return count;
-}
-
 }  // namespace
 
 std::vector<size_t> PlacesByResolution(std::span<const PlannedSource> sources) {
@@ -65,9 +54,20 @@ int SourceLevel(std::span<const PlannedSource> sources, Quadcode node) {
   return level;
 }
 
+int64_t CountNodesUnder(std::span<const PlannedSource> sources, Quadcode node) {
+  std::vector<PlannedSource> here;
+  const GeoBox box = node.Box();
+  std::copy_if(sources.begin(), sources.end(), std::back_inserter(here), [&](const PlannedSource& source) {
+    return source.finest_level > node.level() && Overlap(source.extent, box);
+  });
+  int64_t count = 1;
+  for (int which = 0; which < 4 && !here.empty(); ++which) count += CountNodesUnder(here, node.Child(which));
+  return count;
+}
+
 int64_t CountNodes(std::span<const PlannedSource> sources) {
   int64_t count = 0;
-  for (int tree = 0; tree < kTrees; ++tree) count += CountUnder(sources, Quadcode::Root(tree));
+  for (int tree = 0; tree < kTrees; ++tree) count += CountNodesUnder(sources, Quadcode::Root(tree));
   return count;
 }
 

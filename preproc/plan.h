@@ -42,5 +42,7 @@ int FinestLevel(double spacing_deg, LayerKind kind);
 int SourceLevel(std::span<const PlannedSource> sources, Quadcode node);
 // Quadnodes of the layer, those of further refinement not counted.
 int64_t CountNodes(std::span<const PlannedSource> sources);
+// The same, of the quadnode and those under it. REQUIRES: the plan has the quadnode.
+int64_t CountNodesUnder(std::span<const PlannedSource> sources, Quadcode node);
 
 }  // namespace belvedere

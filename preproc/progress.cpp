@@ -66,7 +66,8 @@ std::string Progress::Line(int64_t done, int64_t planned, double elapsed_s, cons
 
 void Progress::Print(bool terminal) const {
   const std::string line =
-      Line(done_.load(std::memory_order_relaxed), planned_, clock_.NowSeconds() - start_s_, written_());
+      Line(done_.load(std::memory_order_relaxed), std::max<int64_t>(planned_.load(std::memory_order_relaxed), 1),
+           clock_.NowSeconds() - start_s_, written_());
   fmt::print(stderr, "{}{}{}", terminal ? "\r\033[K" : "", line, terminal ? "" : "\n");
   std::fflush(stderr);
 }

@@ -1,6 +1,7 @@
 #include "preproc/raster_source.h"
 
 #include "preproc/raster_reader.h"
+#include "preproc/source_settings.h"
 
 #include <algorithm>
 #include <bit>
@@ -59,6 +60,20 @@ void ShrinkPixel(const Block& finer, const std::array<size_t, 4>& from, size_t c
   }
 }
 
+// Of the file and those that GDAL says it reads with it, as parts of a mosaic. It does not say all, so that where they
+// put the pixels counts as well.
+std::string StateOf(GDALDataset& dataset, const SourceSpec& spec, const Georeference& georeference) {
+  char** names = dataset.GetFileList();
+  std::vector<std::string> paths;
+  for (char** name = names; name != nullptr && *name != nullptr; ++name) paths.emplace_back(*name);
+  CSLDestroy(names);
+  if (paths.empty()) paths.push_back(spec.path);
+  const GeoBox& extent = georeference.extent();
+  return StateOfFiles(paths) + fmt::format("{} x {}, {}, {} {} {} {}\n", dataset.GetRasterXSize(),
+                                           dataset.GetRasterYSize(), georeference.crs_name(), extent.west_deg,
+                                           extent.south_deg, extent.east_deg, extent.north_deg);
+}
+
 }  // namespace
 
 std::shared_ptr<const Block> BlockCache::Find(uint64_t key) {
@@ -99,6 +114,7 @@ Result<std::unique_ptr<RasterSource>> RasterSource::Open(const SourceSpec& spec,
   source->georeference_ = std::move(*georeference);
   source->width_ = source->reader_->width();
   source->height_ = source->reader_->height();
+  source->state_ = StateOf(source->reader_->dataset(), spec, *source->georeference_);
   const GeoBox& extent = source->georeference_->extent();
   if (!(extent.south_deg < 90 && extent.north_deg > -90 && extent.east_deg - extent.west_deg < 361)) {
     return Status::Error(

@@ -87,6 +87,8 @@ class RasterSource {
   double precision_m() const;
   // What was done to the pixels that the user may not expect; may be empty.
   const std::string& remark() const;
+  // Of its files when it was opened (source_settings.h), and where its pixels lie: the same where nothing has changed.
+  const std::string& state() const { return state_; }
   // Whether any pixel is valid; reads the whole source.
   bool HasData();
   // What is done to the colours of its pixels as pages are made. Set before any is.
@@ -122,6 +124,7 @@ class RasterSource {
   int voids_level_ = 0;  // of the pyramid, that voids_ is of
   std::once_flag voids_found_;
   VoidMap voids_;  // once they are found
+  std::string state_;
   std::atomic<bool> used_{false};
   std::atomic<int64_t> bytes_read_{0};
   mutable Mutex failure_mutex_;

@@ -114,6 +114,7 @@ std::string BuildReportJson(const BuildReport& report) {
   for (const auto& layer : report.layers) layers.push_back(LayerJson(layer));
   const json out = {{"seconds", report.seconds},
                     {"pages", report.pages},
+                    {"resumed", report.resumed},
                     {"bytes", report.bytes},
                     {"bytes_read", report.bytes_read},
                     {"layers", layers},
@@ -124,9 +125,12 @@ std::string BuildReportJson(const BuildReport& report) {
 
 std::string BuildReportLine(const BuildReport& report) {
   const double seconds = std::max(report.seconds, 1e-3);
+  const std::string resumed =
+      report.resumed == 0 ? ""
+                          : fmt::format(" ({} of them taken over from the build that was interrupted)", report.resumed);
   return fmt::format(
-      "{} pages, {:.1f} MB in {:.1f} s: {:.0f} pages/s, {:.1f} MB/s written, {:.1f} MB/s of source pixels",
-      report.pages, static_cast<double>(report.bytes) / 1e6, report.seconds,
+      "{} pages{}, {:.1f} MB in {:.1f} s: {:.0f} pages/s, {:.1f} MB/s written, {:.1f} MB/s of source pixels",
+      report.pages, resumed, static_cast<double>(report.bytes) / 1e6, report.seconds,
       static_cast<double>(report.pages) / seconds, static_cast<double>(report.bytes) / 1e6 / seconds,
       static_cast<double>(report.bytes_read) / 1e6 / seconds);
 }

@@ -31,6 +31,7 @@ using CellDeviations = std::vector<Deviation>;  // kCells^2
 struct BoundedPage {
   std::shared_ptr<const ElevationPage> page;
   CellDeviations deviations;
+  int depth = 0;  // levels of finer pages under it; of pages that were not made anew (known_pages.h) three at most
 };
 
 // Fills min_m, max_m, block_errors_m and error_m of a page: over its posts, and all that is finer where there are

@@ -84,6 +84,12 @@ class LmdbDataset final : public Dataset {
     if (!value) return std::nullopt;
     return std::vector<uint8_t>(value->begin(), value->end());
   }
+  std::optional<std::vector<uint8_t>> ReadDeviations(int layer, Quadcode node) const override {
+    const ReadTransaction txn(env_);
+    const auto value = FindAt(txn, store::MakeDeviationsKey(layer, node.word()));
+    if (!value) return std::nullopt;
+    return std::vector<uint8_t>(value->begin(), value->end());
+  }
   int64_t StoredBytes(int layer, Quadcode node) const override {
     const ReadTransaction txn(env_);
     const auto value = Find(txn, layer, node);
@@ -140,8 +146,11 @@ class LmdbDataset final : public Dataset {
   }
 
   std::optional<std::span<const uint8_t>> Find(const ReadTransaction& txn, int layer, Quadcode node) const {
+    return FindAt(txn, store::MakeKey(layer, node.word()));
+  }
+  template <typename KeyType>
+  std::optional<std::span<const uint8_t>> FindAt(const ReadTransaction& txn, KeyType bytes) const {
     if (txn.get() == nullptr) return std::nullopt;
-    store::Key bytes = store::MakeKey(layer, node.word());
     MDB_val key{bytes.size(), bytes.data()};
     MDB_val value{};
     if (mdb_get(txn.get(), dbi_, &key, &value) != MDB_SUCCESS) return std::nullopt;

@@ -93,7 +93,9 @@ class Dataset {
 
   // Stored bytes of a page, as ReadElevation decodes them; nullopt when it is not there.
   virtual std::optional<std::vector<uint8_t>> ReadRaw(int layer, Quadcode node) const = 0;
-  // How many there are, without reading them; 0 when it is not there.
+  // What the builder keeps of a page for itself (DatasetWriter::PutDeviations); nullopt where it keeps nothing.
+  virtual std::optional<std::vector<uint8_t>> ReadDeviations(int layer, Quadcode node) const = 0;
+  // How many bytes a page has, without reading it; 0 when it is not there.
   virtual int64_t StoredBytes(int layer, Quadcode node) const = 0;
 };
 

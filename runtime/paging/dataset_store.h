@@ -1,7 +1,8 @@
 // What Dataset and DatasetWriter agree on: keys and metadata of the LMDB store. docs/dataset-format.md has the layout.
 //
 // Key of a page: layer number in one byte, then the quadcode word, both big-endian, so that a layer is a range of keys
-// in quadcode order. Key of the metadata: the bytes "meta", which no page key equals in length.
+// in quadcode order. What the builder keeps of a page for itself has the page's key and one byte more. Key of the
+// metadata: the bytes "meta", which no page key equals in length.
 //
 // Threads: pure functions.
 #pragma once
@@ -21,12 +22,23 @@ namespace belvedere::store {
 inline constexpr size_t kKeyBytes = 9;
 inline constexpr std::string_view kMetadataKey = "meta";
 inline constexpr std::string_view kStoreFile = "data.mdb";
+// Of a store that is not finished: what it is being made of, and what its builder noted.
+inline constexpr std::string_view kMadeOfKey = "made of";
+inline constexpr std::string_view kNotesKey = "notes";
 
 using Key = std::array<uint8_t, kKeyBytes>;
+using DeviationsKey = std::array<uint8_t, kKeyBytes + 1>;
 
 inline Key MakeKey(int layer, uint64_t word) {
   Key key{static_cast<uint8_t>(layer)};
   for (size_t i = 0; i < 8; ++i) key[1 + i] = static_cast<uint8_t>(word >> (56 - 8 * i));
+  return key;
+}
+inline DeviationsKey MakeDeviationsKey(int layer, uint64_t word) {
+  DeviationsKey key{};
+  const Key page = MakeKey(layer, word);
+  for (size_t i = 0; i < kKeyBytes; ++i) key[i] = page[i];
+  key[kKeyBytes] = 'd';
   return key;
 }
 inline uint64_t WordOfKey(const uint8_t* key) {

@@ -2,34 +2,22 @@
 //
 // Each runs in a process of its own, forked before this one has a thread.
 
+#include "tests/preproc/in_child.h"
 #include "tests/preproc/made_raster.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <csignal>
 #include <cstdio>
 #include <filesystem>
-#include <functional>
 #include <random>
-#include <thread>
 
 namespace belvedere {
 namespace {
 
 using namespace testing_rasters;
 namespace fs = std::filesystem;
-
-// Runs it in a child and returns the child's wait status.
-int InChild(const std::function<int()>& body) {
-  const pid_t child = fork();
-  if (child == 0) _exit(body());
-  int status = 0;
-  EXPECT_EQ(waitpid(child, &status, 0), child);
-  return status;
-}
 
 Result<BuildReport> BuildFrom(const std::string& folder, const std::string& source) {
   const auto spec = ParseSpec(Layer("elevation", {"path = \"" + source + "\""}), folder + "/spec.toml");
@@ -50,8 +38,7 @@ std::string Prepare(const std::string& name) {
         {.width = 1024, .height = 512, .affine = Degrees(-180, 90, 360.0 / 1024), .value = [&](int, int, int) {
            return static_cast<double>(random() % 8000);
          }});
-  const int status = InChild([&] { return BuildFrom(folder, "small.tif").ok() ? 0 : 1; });
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+  EXPECT_TRUE(Succeeds([&] { return BuildFrom(folder, "small.tif").ok(); }));
   return folder;
 }
 
@@ -65,22 +52,16 @@ void ExpectPrevious(const std::string& folder) {
 
 TEST(BuildFailure, AKilledBuildLeavesThePreviousDataset) {
   const std::string folder = Prepare("killed");
-  const int status = InChild([&] {
-    std::thread build([&] { static_cast<void>(BuildFrom(folder, "large.tif").ok()); });
-    const fs::path partial = folder + "/out.partial/data.mdb";
-    std::error_code error;
-    while (!fs::exists(partial, error) || fs::file_size(partial, error) < (size_t{1} << 22)) std::this_thread::yield();
-    std::raise(SIGKILL);
-    build.join();
-    return 0;
-  });
-  ASSERT_TRUE(WIFSIGNALED(status));
-  EXPECT_EQ(WTERMSIG(status), SIGKILL);
+  const fs::path partial = folder + "/out.partial/data.mdb";
+  std::error_code error;
+  const auto far_enough = [&] {
+    return fs::exists(partial, error) && fs::file_size(partial, error) >= (size_t{1} << 22);
+  };
+  ASSERT_TRUE(IsKilledWhen(far_enough, [&] { static_cast<void>(BuildFrom(folder, "large.tif").ok()); }));
   EXPECT_TRUE(fs::exists(folder + "/out.partial"));
   ExpectPrevious(folder);
   // And the next build clears away what was left.
-  const int again = InChild([&] { return BuildFrom(folder, "small.tif").ok() ? 0 : 1; });
-  EXPECT_TRUE(WIFEXITED(again) && WEXITSTATUS(again) == 0);
+  EXPECT_TRUE(Succeeds([&] { return BuildFrom(folder, "small.tif").ok(); }));
   EXPECT_FALSE(fs::exists(folder + "/out.partial"));
   ExpectPrevious(folder);
 }

@@ -186,6 +186,79 @@ TEST(Dataset, AnUnfinishedBuildLeavesThePreviousOne) {
   EXPECT_EQ((*dataset)->layers()[0].pages, 36);
 }
 
+// Leaves what a writer that is killed after a commit would, and something that it had not committed.
+std::string LeaveUnfinished(const std::string& name, const std::string& made_of) {
+  const std::string path = FreshFolder(name);
+  fs::remove_all(path + ".partial");
+  {
+    auto writer = DatasetWriter::Create(path, made_of);
+    EXPECT_TRUE(writer.ok()) << writer.message();
+    EXPECT_TRUE((*writer)->Put(1, Quadcode::Root(3), {1, 2, 3}).ok());
+    EXPECT_TRUE((*writer)->PutDeviations(1, Quadcode::Root(3), {4, 5}).ok());
+    EXPECT_TRUE((*writer)->Note("so far").ok());
+    EXPECT_TRUE((*writer)->Commit().ok());
+    EXPECT_TRUE((*writer)->Put(1, Quadcode::Root(4), {6}).ok());
+    fs::copy(path + ".partial", path + ".kept", fs::copy_options::recursive);
+  }
+  fs::rename(path + ".kept", path + ".partial");
+  return path;
+}
+
+TEST(Dataset, WhatAKilledWriterCommittedIsTakenUp) {
+  const std::string path = LeaveUnfinished("resumed", "these sources");
+  auto writer = DatasetWriter::Create(path, "these sources");
+  ASSERT_TRUE(writer.ok()) << writer.message();
+  EXPECT_EQ((*writer)->Resumed(1), (std::vector<uint64_t>{Quadcode::Root(3).word()}));
+  EXPECT_TRUE((*writer)->Resumed(0).empty());
+  EXPECT_EQ((*writer)->notes(), "so far");
+  EXPECT_EQ((*writer)->Get(1, Quadcode::Root(3)), (std::vector<uint8_t>{1, 2, 3}));
+  EXPECT_EQ((*writer)->GetDeviations(1, Quadcode::Root(3)), (std::vector<uint8_t>{4, 5}));
+  EXPECT_FALSE((*writer)->Get(1, Quadcode::Root(4)));
+  ASSERT_TRUE((*writer)->Finish({Layer("a", LayerKind::kImagery), Layer("b", LayerKind::kImagery)}, "now").ok());
+  const auto dataset = Dataset::Open(path);
+  ASSERT_TRUE(dataset.ok()) << dataset.message();
+  EXPECT_EQ((*dataset)->Nodes(1).size(), 1u) << "deviations are no page";
+  EXPECT_EQ((*dataset)->layers()[1].bytes, 3);
+  EXPECT_EQ((*dataset)->ReadDeviations(1, Quadcode::Root(3)), (std::vector<uint8_t>{4, 5}));
+}
+
+TEST(Dataset, WhatIsMadeOfSomethingElseIsThrownAway) {
+  for (const std::string made_of : {"other sources", ""}) {
+    const std::string path = LeaveUnfinished("not_resumed", "these sources");
+    auto writer = DatasetWriter::Create(path, made_of);
+    ASSERT_TRUE(writer.ok()) << writer.message();
+    EXPECT_TRUE((*writer)->Resumed(1).empty());
+    EXPECT_EQ((*writer)->notes(), "");
+    EXPECT_FALSE((*writer)->Get(1, Quadcode::Root(3)));
+  }
+  const std::string path = LeaveUnfinished("discarded", "these sources");
+  EXPECT_TRUE(DatasetWriter::Discard(path).ok());
+  EXPECT_FALSE(fs::exists(path + ".partial"));
+  EXPECT_TRUE(DatasetWriter::Discard(path).ok());
+}
+
+TEST(Dataset, ADamagedUnfinishedStoreIsThrownAway) {
+  const std::string path = LeaveUnfinished("torn", "these sources");
+  fs::resize_file(path + ".partial/data.mdb", 100);
+  auto writer = DatasetWriter::Create(path, "these sources");
+  ASSERT_TRUE(writer.ok()) << writer.message();
+  EXPECT_TRUE((*writer)->Resumed(1).empty());
+  EXPECT_TRUE((*writer)->Put(1, Quadcode::Root(4), {6}).ok());
+}
+
+TEST(Dataset, OneWriterAtATime) {
+  const std::string path = FreshFolder("two_writers");
+  auto first = DatasetWriter::Create(path);
+  ASSERT_TRUE(first.ok());
+  const auto second = DatasetWriter::Create(path);
+  ASSERT_FALSE(second.ok());
+  EXPECT_NE(second.message().find("another build"), std::string::npos) << second.message();
+  EXPECT_FALSE(DatasetWriter::Discard(path).ok());
+  EXPECT_TRUE((*first)->Put(0, Quadcode::Root(0), {1}).ok());
+  EXPECT_TRUE((*first)->Finish({Layer("a", LayerKind::kImagery)}, "now").ok());
+  EXPECT_TRUE(DatasetWriter::Create(path).ok());
+}
+
 TEST(Dataset, AnOpenDatasetOutlivesItsReplacement) {
   const std::string path = MakeDataset("replaced");
   const auto before = Dataset::Open(path);

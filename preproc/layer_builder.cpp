@@ -1,0 +1,125 @@
+#include "preproc/layer_builder.h"
+
+#include "preproc/deltas_from_children.h"
+#include "preproc/deviation_codec.h"
+#include "runtime/paging/page_codec.h"
+
+#include <tbb/task_group.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace belvedere {
+
+void OpenLayer::PutFinestLast() {
+  OpenLayer sorted;
+  for (const size_t place : PlacesByResolution(plan)) {
+    sorted.sources.push_back(std::move(sources[place]));
+    sorted.plan.push_back(plan[place]);
+  }
+  sources = std::move(sorted.sources);
+  plan = std::move(sorted.plan);
+}
+
+std::vector<RasterSource*> OpenLayer::pointers() const {
+  std::vector<RasterSource*> out;
+  out.reserve(sources.size());
+  for (const auto& source : sources) out.push_back(source.get());
+  return out;
+}
+
+LayerBuilder::LayerBuilder(int number, const OpenLayer& layer, const Geoid& geoid, PageSink& sink,
+                           const KnownPages* known, Progress* progress)
+    : number_(number), layer_(layer), sink_(sink), known_(known), progress_(progress), composites_([&layer, &geoid] {
+        return std::make_unique<Composite>(layer.spec.kind, layer.pointers(), geoid);
+      }) {}
+
+void LayerBuilder::BuildTree(Quadcode root) {
+  if (IsKnown(root)) {
+    CountSpared(root);
+  } else if (layer_.spec.kind == LayerKind::kElevation) {
+    BuildElevation(root);
+  } else {
+    BuildImage(root);
+  }
+}
+
+bool LayerBuilder::Stopped() const {
+  return sink_.failed() ||
+         std::any_of(layer_.sources.begin(), layer_.sources.end(), [](const auto& s) { return !s->failure().ok(); });
+}
+
+void LayerBuilder::BuildImage(Quadcode node) {
+  if (Stopped()) return;
+  if (IsKnown(node)) return CountSpared(node);
+  if (node.level() < SourceLevel(layer_.plan, node)) {
+    tbb::task_group children;
+    for (int which = 0; which < 4; ++which) children.run([this, node, which] { BuildImage(node.Child(which)); });
+    children.wait();
+  }
+  const std::vector<uint8_t> texels = composites_.local()->Texels(node);
+  if (Stopped()) return;
+  sink_.Put(number_, node, EncodeImage(texels));
+  CountDone(node);
+}
+
+// Nothing where the build is stopped.
+BoundedPage LayerBuilder::BuildElevation(Quadcode node) {
+  if (Stopped()) return {};
+  if (IsKnown(node)) return TakeElevation(node);
+  auto page = std::make_shared<ElevationPage>();
+  page->heights_mm = composites_.local()->Heights_mm(node);
+  const int source_level = SourceLevel(layer_.plan, node);
+  BoundedPage bounded;
+  if (node.level() < source_level || NeedsRefinement(*page, node, source_level)) {
+    std::array<BoundedPage, 4> finer;
+    tbb::task_group children;
+    for (size_t which = 0; which < 4; ++which) {
+      children.run([this, node, which, &finer] { finer[which] = BuildElevation(node.Child(static_cast<int>(which))); });
+    }
+    children.wait();
+    if (Stopped()) return {};
+    bounded.deviations = BoundPage(*page, &finer);
+    page->deltas = DeltasFromChildren(node, *page, finer);
+    for (const BoundedPage& child : finer) bounded.depth = std::max(bounded.depth, child.depth + 1);
+  } else {
+    bounded.deviations = BoundPage(*page, nullptr);
+  }
+  if (Stopped()) return {};
+  sink_.Put(number_, node, EncodeElevation(*page),
+            bounded.depth >= kDepthWithDeviations ? EncodeDeviations(bounded.deviations) : std::vector<uint8_t>());
+  CountDone(node);
+  bounded.page = std::move(page);
+  return bounded;
+}
+
+BoundedPage LayerBuilder::TakeElevation(Quadcode node) {
+  CountSpared(node);
+  auto bounded = ReadBounded(*known_, number_, node);
+  if (bounded.ok()) return std::move(*bounded);
+  sink_.Fail(Status::Error("layer {}: what was built before is damaged: {}; build it again with --fresh",
+                           layer_.spec.name, bounded.message()));
+  return {};
+}
+
+bool LayerBuilder::NeedsRefinement(const ElevationPage& page, Quadcode node, int source_level) {
+  if (node.level() >= std::min(source_level + kRefineLevels, kMaxLevel)) return false;
+  const std::vector<double> probes = composites_.local()->ProbeHeights(node);
+  return ShareBeyond(page, probes, RefineTolerance_m(source_level)) > kRefineShare;
+}
+
+// Whether the plan counted it, which knows of no further refinement.
+bool LayerBuilder::IsPlanned(Quadcode node) const {
+  return node.is_root() || node.level() <= SourceLevel(layer_.plan, node.Parent());
+}
+
+void LayerBuilder::CountDone(Quadcode node) {
+  if (progress_ != nullptr && IsPlanned(node)) progress_->Done();
+}
+
+void LayerBuilder::CountSpared(Quadcode node) {
+  if (progress_ != nullptr && IsPlanned(node)) progress_->Spare(CountNodesUnder(layer_.plan, node));
+}
+
+}  // namespace belvedere
