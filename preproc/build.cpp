@@ -3,52 +3,35 @@
 #include "preproc/colour_match.h"
 #include "preproc/layer_builder.h"
 #include "preproc/resumed_pages.h"
-#include "preproc/source_path.h"
 #include "preproc/source_settings.h"
+#include "runtime/base/iso_time.h"
 #include "runtime/base/log.h"
 #include "runtime/earth/geoid.h"
 #include "runtime/paging/dataset_writer.h"
 
-#include <fmt/chrono.h>
 #include <gdal_priv.h>
-#include <tbb/global_control.h>
-#include <tbb/task_arena.h>
-#include <tbb/task_group.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <ctime>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
-#include <thread>
 #include <utility>
 
 namespace belvedere {
 namespace {
 
-constexpr int64_t kGdalCacheBytes = int64_t{64} << 20;
-
-bool AnyNamesServer(const BuildSpec& spec) {
-  return std::any_of(spec.layers.begin(), spec.layers.end(), [](const LayerSpec& layer) {
-    return std::any_of(layer.sources.begin(), layer.sources.end(),
-                       [](const SourceSpec& source) { return NamesServer(source.path); });
-  });
-}
-
 class Builder {
  public:
   Builder(const BuildSpec& spec, const BuildOptions& options, const Clock& clock)
-      : spec_(spec), options_(options), clock_(clock), jobs_(JobsOf(options)) {}
+      : spec_(spec), options_(options), clock_(clock), jobs_(WorkersOf(options.jobs)) {}
 
   Result<BuildReport> Run() {
     const double start_s = clock_.NowSeconds();
     report_.jobs = jobs_;
-    GDALAllRegister();
-    CPLSetErrorHandler(CPLQuietErrorHandler);
-    GDALSetCacheMax64(kGdalCacheBytes);
-    KeepOffNetwork(!AnyNamesServer(spec_));
+    PrepareGdal(spec_.layers);
     auto geoid = Geoid::LoadEgm96();
     if (!geoid.ok()) return geoid.status();
     // Each round without what the one before found to be useless; so at most one more than there are sources.
@@ -85,11 +68,6 @@ class Builder {
   }
 
  private:
-  static int JobsOf(const BuildOptions& options) {
-    const int cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-    return options.jobs > 0 ? options.jobs : cores;
-  }
-
   // A source without a time is in every step of a layer: it is left out of all.
   static std::string KeyOf(const LayerSpec& layer, const SourceSpec& source) {
     return (layer.step ? layer.step->layer : layer.name) + "\n" + source.written_path;
@@ -103,8 +81,8 @@ class Builder {
 
   // All that the pages depend on. What cannot be opened counts too: later it may be there.
   std::string MadeOf(const Geoid& geoid) const {
-    std::string text = fmt::format("version {}, GDAL {}\n{}", kDatasetVersion, GDALVersionInfo("RELEASE_NAME"),
-                                   StateOfFiles({"/proc/self/exe", geoid.path()}));
+    std::string text = fmt::format("version {}, rules {}, GDAL {}\n{}", kDatasetVersion, kBuilderRules,
+                                   GDALVersionInfo("RELEASE_NAME"), StateOfFiles({"/proc/self/exe", geoid.path()}));
     for (const LayerSpec& layer : spec_.layers) {
       text += fmt::format("{} {} {}\n", LayerKindName(layer.kind), layer.name, static_cast<int>(layer.priority));
       for (const SourceSpec& source : layer.sources) text += SettingsToJson(source) + "\n";
@@ -165,12 +143,9 @@ class Builder {
           Exclude(layer_spec, source_spec, source.message());
           continue;
         }
-        const Georeference& georeference = (*source)->georeference();
-        layer.plan.push_back({georeference.extent(), FinestLevel(georeference.spacing_deg(), layer_spec.kind),
-                              georeference.spacing_deg(), source_spec.utc_s.has_value()});
-        layer.sources.push_back(std::move(*source));
+        layer.Add(std::move(*source));
       }
-      if (layer_spec.priority == Priority::kResolution) layer.PutFinestLast();
+      layer.PutInOrder();
       if (IsWorthBuilding(layer)) layers_.push_back(std::move(layer));
     }
     if (!layers_.empty()) return {};
@@ -181,7 +156,7 @@ class Builder {
   Status MakePages(const Geoid& geoid, DatasetWriter& writer) {
     int64_t planned = 0;
     for (const OpenLayer& layer : layers_) planned += CountNodes(layer.plan);
-    const ResumedPages resumed(writer, static_cast<int>(layers_.size()));
+    ResumedPages resumed(writer, static_cast<int>(layers_.size()));
     report_.resumed = resumed.pages();
     if (report_.resumed > 0)
       LogInfo("{}: goes on with {} pages of the build that was interrupted", options_.out, report_.resumed);
@@ -194,17 +169,7 @@ class Builder {
       builders.push_back(std::make_unique<LayerBuilder>(static_cast<int>(i), layers_[i], geoid, sink, &resumed,
                                                         progress ? &*progress : nullptr));
     }
-    const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(jobs_));
-    tbb::task_arena arena(jobs_);
-    arena.execute([&] {
-      tbb::task_group trees;
-      for (auto& builder : builders) {
-        for (int tree = 0; tree < kTrees; ++tree) {
-          trees.run([&builder = *builder, tree] { builder.BuildTree(Quadcode::Root(tree)); });
-        }
-      }
-      trees.wait();
-    });
+    BuildAllTrees(builders, jobs_);
     return sink.Close();
   }
 
@@ -237,16 +202,7 @@ class Builder {
     const std::set<std::string> seen = SeenKeys();
     std::vector<LayerRecord> records;
     for (const OpenLayer& layer : layers_) {
-      LayerRecord record;
-      record.name = layer.spec.name;
-      record.kind = layer.spec.kind;
-      record.step = layer.spec.step;
-      if (layer.spec.kind == LayerKind::kElevation) {
-        record.vertical_reference = "WGS 84 ellipsoid; mean sea level lifted by " + geoid.path();
-      }
       for (size_t i = 0; i < layer.sources.size(); ++i) {
-        record.sources.push_back(layer.sources[i]->Record());
-        record.sources.back().finest_level = layer.plan[i].finest_level;
         report_.bytes_read += layer.sources[i]->bytes_read();
         if (!layer.sources[i]->remark().empty()) Warn(*layer.sources[i], layer.sources[i]->remark());
         if (!seen.contains(KeyOf(layer.spec, layer.sources[i]->spec()))) {
@@ -254,10 +210,9 @@ class Builder {
         }
       }
       for (const Unmatched& unmatched : layer.unmatched) Warn(*unmatched.source, unmatched.reason);
-      records.push_back(std::move(record));
+      records.push_back(layer.Record(geoid));
     }
-    const std::string now =
-        fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(static_cast<std::time_t>(clock_.UtcSeconds())));
+    const std::string now = FormatIsoTime(std::floor(clock_.UtcSeconds()));
     if (Status status = writer.Finish(std::move(records), now); !status.ok()) return status;
     const auto dataset = Dataset::Open(options_.out);
     if (!dataset.ok()) return dataset.status();

@@ -43,7 +43,10 @@ struct BuildReport {
   int jobs = 0;
   int64_t pages = 0;
   int64_t resumed = 0;     // pages of them that were taken over from a build that was interrupted
-  int64_t bytes = 0;       // of the store on disk
+  bool is_change = false;  // of a dataset that was there (update.h); then, of the pages:
+  int64_t written = 0;     // those that are new or have other bytes than before
+  int64_t removed = 0;     // those that are no longer there
+  int64_t bytes = 0;       // of the stores on disk
   int64_t bytes_read = 0;  // of source pixels, unpacked
   std::vector<LayerRecord> layers;
   std::vector<SourceRemark> skipped, warnings;

@@ -23,6 +23,8 @@ class KnownPages {
   virtual ~KnownPages() = default;
   // Whether the page and all that is under it are as the build would make them.
   virtual bool Knows(int layer, Quadcode node) const = 0;
+  // The build has come to the page, which is known, and leaves it and all under it as they are.
+  virtual void Take(int /*layer*/, Quadcode /*node*/) {}
   // Of pages that are known: as stored.
   virtual bool Exists(int layer, Quadcode node) const = 0;
   virtual std::optional<std::vector<uint8_t>> Page(int layer, Quadcode node) const = 0;

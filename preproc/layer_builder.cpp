@@ -4,40 +4,26 @@
 #include "preproc/deviation_codec.h"
 #include "runtime/paging/page_codec.h"
 
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 
 #include <algorithm>
 #include <array>
+#include <thread>
 #include <utility>
 
 namespace belvedere {
 
-void OpenLayer::PutFinestLast() {
-  OpenLayer sorted;
-  for (const size_t place : PlacesByResolution(plan)) {
-    sorted.sources.push_back(std::move(sources[place]));
-    sorted.plan.push_back(plan[place]);
-  }
-  sources = std::move(sorted.sources);
-  plan = std::move(sorted.plan);
-}
-
-std::vector<RasterSource*> OpenLayer::pointers() const {
-  std::vector<RasterSource*> out;
-  out.reserve(sources.size());
-  for (const auto& source : sources) out.push_back(source.get());
-  return out;
-}
-
-LayerBuilder::LayerBuilder(int number, const OpenLayer& layer, const Geoid& geoid, PageSink& sink,
-                           const KnownPages* known, Progress* progress)
+LayerBuilder::LayerBuilder(int number, const OpenLayer& layer, const Geoid& geoid, PageSink& sink, KnownPages* known,
+                           Progress* progress)
     : number_(number), layer_(layer), sink_(sink), known_(known), progress_(progress), composites_([&layer, &geoid] {
         return std::make_unique<Composite>(layer.spec.kind, layer.pointers(), geoid);
       }) {}
 
 void LayerBuilder::BuildTree(Quadcode root) {
   if (IsKnown(root)) {
-    CountSpared(root);
+    Take(root);
   } else if (layer_.spec.kind == LayerKind::kElevation) {
     BuildElevation(root);
   } else {
@@ -52,7 +38,7 @@ bool LayerBuilder::Stopped() const {
 
 void LayerBuilder::BuildImage(Quadcode node) {
   if (Stopped()) return;
-  if (IsKnown(node)) return CountSpared(node);
+  if (IsKnown(node)) return Take(node);
   if (node.level() < SourceLevel(layer_.plan, node)) {
     tbb::task_group children;
     for (int which = 0; which < 4; ++which) children.run([this, node, which] { BuildImage(node.Child(which)); });
@@ -95,10 +81,10 @@ BoundedPage LayerBuilder::BuildElevation(Quadcode node) {
 }
 
 BoundedPage LayerBuilder::TakeElevation(Quadcode node) {
-  CountSpared(node);
+  Take(node);
   auto bounded = ReadBounded(*known_, number_, node);
   if (bounded.ok()) return std::move(*bounded);
-  sink_.Fail(Status::Error("layer {}: what was built before is damaged: {}; build it again with --fresh",
+  sink_.Fail(Status::Error("layer {}: what was built before is damaged: {}; build it again, with --fresh",
                            layer_.spec.name, bounded.message()));
   return {};
 }
@@ -118,8 +104,27 @@ void LayerBuilder::CountDone(Quadcode node) {
   if (progress_ != nullptr && IsPlanned(node)) progress_->Done();
 }
 
-void LayerBuilder::CountSpared(Quadcode node) {
+void LayerBuilder::Take(Quadcode node) {
+  known_->Take(number_, node);
   if (progress_ != nullptr && IsPlanned(node)) progress_->Spare(CountNodesUnder(layer_.plan, node));
+}
+
+int WorkersOf(int jobs) {
+  return jobs > 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
+void BuildAllTrees(std::span<const std::unique_ptr<LayerBuilder>> builders, int jobs) {
+  const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(jobs));
+  tbb::task_arena arena(jobs);
+  arena.execute([&] {
+    tbb::task_group trees;
+    for (const auto& builder : builders) {
+      for (int tree = 0; tree < kTrees; ++tree) {
+        trees.run([&builder = *builder, tree] { builder.BuildTree(Quadcode::Root(tree)); });
+      }
+    }
+    trees.wait();
+  });
 }
 
 }  // namespace belvedere

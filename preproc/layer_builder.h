@@ -6,36 +6,24 @@
 // Threads: BuildTree, any of the workers; it runs tasks of its own.
 #pragma once
 
-#include "preproc/colour_match.h"
 #include "preproc/composite.h"
 #include "preproc/known_pages.h"
+#include "preproc/open_layer.h"
 #include "preproc/page_sink.h"
-#include "preproc/plan.h"
 #include "preproc/progress.h"
-#include "preproc/raster_source.h"
 #include "preproc/surface_error.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
 #include <memory>
-#include <vector>
+#include <span>
 
 namespace belvedere {
-
-struct OpenLayer {
-  LayerSpec spec;
-  std::vector<std::unique_ptr<RasterSource>> sources;
-  std::vector<PlannedSource> plan;  // of the sources
-  std::vector<Unmatched> unmatched;
-
-  void PutFinestLast();
-  std::vector<RasterSource*> pointers() const;
-};
 
 class LayerBuilder {
  public:
   // known and progress may be null. All outlive the builder.
-  LayerBuilder(int number, const OpenLayer& layer, const Geoid& geoid, PageSink& sink, const KnownPages* known,
+  LayerBuilder(int number, const OpenLayer& layer, const Geoid& geoid, PageSink& sink, KnownPages* known,
                Progress* progress);
 
   void BuildTree(Quadcode root);
@@ -49,14 +37,19 @@ class LayerBuilder {
   bool IsKnown(Quadcode node) const { return known_ != nullptr && known_->Knows(number_, node); }
   bool IsPlanned(Quadcode node) const;
   void CountDone(Quadcode node);
-  void CountSpared(Quadcode node);
+  void Take(Quadcode node);
 
   const int number_;
   const OpenLayer& layer_;
   PageSink& sink_;
-  const KnownPages* const known_;
+  KnownPages* const known_;
   Progress* const progress_;
   tbb::enumerable_thread_specific<std::unique_ptr<Composite>> composites_;
 };
+
+// As many as the machine has cores where 0 are asked for.
+int WorkersOf(int jobs);
+// All pages of all layers, by so many workers.
+void BuildAllTrees(std::span<const std::unique_ptr<LayerBuilder>> builders, int jobs);
 
 }  // namespace belvedere

@@ -1,10 +1,13 @@
-// belvedere-build: sources to a dataset; what is in a dataset; whether it is whole; and out of it again.
+// belvedere-build: sources to a dataset, and into one and out of it; what is in a dataset; whether it is whole; and out
+// of it again.
 
 #include "preproc/build.h"
+#include "preproc/dataset_spec.h"
 #include "preproc/export.h"
 #include "preproc/report.h"
 #include "preproc/report_page.h"
 #include "preproc/spec.h"
+#include "preproc/update.h"
 #include "runtime/base/clock.h"
 
 #include <fmt/format.h>
@@ -13,6 +16,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -41,16 +45,34 @@ belvedere::Status WritePage(const belvedere::BuildReport& report, const std::str
   return belvedere::WriteReportPage(**dataset, report, page.path.empty() ? own : page.path);
 }
 
+int Say(const belvedere::BuildReport& report, const std::string& out, const PageOptions& page, bool json) {
+  if (const belvedere::Status status = WritePage(report, out, page); !status.ok())
+    return Fail(fmt::format("the dataset {} is built, but not its report: {}", out, status.message()));
+  fmt::print(stderr, "{}: {}\n", out, belvedere::BuildReportLine(report));
+  if (json) fmt::print("{}\n", belvedere::BuildReportJson(report));
+  return 0;
+}
+
 int RunBuild(const std::string& spec_path, const belvedere::BuildOptions& options, const PageOptions& page, bool json) {
   const auto spec = belvedere::LoadSpec(spec_path);
   if (!spec.ok()) return Fail(spec.message());
   const auto report = belvedere::Build(*spec, options, belvedere::Clock::System());
   if (!report.ok()) return Fail(report.message());
-  if (const belvedere::Status status = WritePage(*report, options.out, page); !status.ok())
-    return Fail(fmt::format("the dataset {} is built, but not its report: {}", options.out, status.message()));
-  fmt::print(stderr, "{}: {}\n", options.out, belvedere::BuildReportLine(*report));
-  if (json) fmt::print("{}\n", belvedere::BuildReportJson(*report));
-  return 0;
+  return Say(*report, options.out, page, json);
+}
+
+int RunUpdate(const belvedere::SpecChange& change, const belvedere::BuildOptions& options, const PageOptions& page,
+              bool json) {
+  const auto report = belvedere::Update(change, options, belvedere::Clock::System());
+  if (!report.ok()) return Fail(report.message());
+  return Say(*report, options.out, page, json);
+}
+
+int RunAdd(const std::string& spec_path, const belvedere::BuildOptions& options, const PageOptions& page, bool json) {
+  const auto added = belvedere::LoadSpec(spec_path);
+  if (!added.ok()) return Fail(added.message());
+  return RunUpdate([&](belvedere::BuildSpec spec) { return belvedere::WithAdded(std::move(spec), *added); }, options,
+                   page, json);
 }
 
 int RunInfo(const std::string& path, bool json) {
@@ -116,6 +138,21 @@ int main(int argc, char** argv) {
   info->add_flag("--json", json, "print it as JSON");
   CLI::App* verify = app.add_subcommand("verify", "read and check every page of a dataset");
   verify->add_option("DATASET", dataset_path, "folder of the dataset")->required();
+  const auto change = [&](const char* name, const char* what) {
+    CLI::App* command = app.add_subcommand(name, what);
+    command->add_option("DATASET", options.out, "folder of the dataset")->required();
+    command->add_option("--jobs", options.jobs, "workers (default: one for each core)")->check(CLI::Range(1, 1024));
+    command->add_flag("--no-report", page.none, "write no page that shows what was built");
+    command->add_flag("--json", json, "print a report as JSON");
+    return command;
+  };
+  CLI::App* adding = change("add", "add sources to a dataset; only what they cover is made anew");
+  adding->add_option("SPEC", spec_path, "layers and their sources, which come over those that are there")->required();
+  CLI::App* removing = change("remove", "remove a source from a dataset; only what it covered is made anew");
+  std::string source, layer;
+  removing->add_option("SOURCE", source, "its path, as info shows it or as it is opened")->required();
+  removing->add_option("--layer", layer, "from this layer alone");
+  CLI::App* updating = change("update", "make anew what sources cover whose files have changed");
   CLI::App* exporting = app.add_subcommand("export", "a layer as a GeoTIFF, or imagery as MBTiles");
   belvedere::ExportOptions exported;
   std::vector<double> extent;
@@ -144,6 +181,15 @@ int main(int argc, char** argv) {
     exported.extent = BoxOf(extent);
     if (no_fill) exported.enlarge = belvedere::Enlarge::kNothing;
     return RunExport(dataset_path, exported);
+  }
+  if (adding->parsed()) return RunAdd(spec_path, options, page, json);
+  if (removing->parsed()) {
+    return RunUpdate([&](belvedere::BuildSpec spec) { return belvedere::WithRemoved(std::move(spec), source, layer); },
+                     options, page, json);
+  }
+  if (updating->parsed()) {
+    return RunUpdate([](belvedere::BuildSpec spec) -> belvedere::Result<belvedere::BuildSpec> { return spec; }, options,
+                     page, json);
   }
   return RunBuild(spec_path, options, page, json);
 }

@@ -134,6 +134,8 @@ SourceRecord RasterSource::Record() const {
   record.nodata = reader_->nodata();
   record.utc_s = spec_.utc_s;
   record.colour_fit = colour_fit_;
+  record.settings = SettingsToJson(spec_);
+  record.state = state_;
   if (kind_ == LayerKind::kElevation) {
     record.datum = spec_.datum == VerticalDatum::kEgm96       ? "egm96"
                    : spec_.datum == VerticalDatum::kEllipsoid ? "ellipsoid"

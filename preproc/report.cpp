@@ -112,19 +112,28 @@ std::string FitText(const ColourFit& fit) {
 std::string BuildReportJson(const BuildReport& report) {
   json layers = json::array();
   for (const auto& layer : report.layers) layers.push_back(LayerJson(layer));
-  const json out = {{"seconds", report.seconds},
-                    {"pages", report.pages},
-                    {"resumed", report.resumed},
-                    {"bytes", report.bytes},
-                    {"bytes_read", report.bytes_read},
-                    {"layers", layers},
-                    {"skipped", RemarksJson(report.skipped)},
-                    {"warnings", RemarksJson(report.warnings)}};
+  json out = {{"seconds", report.seconds},
+              {"pages", report.pages},
+              {"resumed", report.resumed},
+              {"bytes", report.bytes},
+              {"bytes_read", report.bytes_read},
+              {"layers", layers},
+              {"skipped", RemarksJson(report.skipped)},
+              {"warnings", RemarksJson(report.warnings)}};
+  if (report.is_change) {
+    out["written"] = report.written;
+    out["removed"] = report.removed;
+  }
   return out.dump(2);
 }
 
 std::string BuildReportLine(const BuildReport& report) {
   const double seconds = std::max(report.seconds, 1e-3);
+  if (report.is_change) {
+    if (report.written + report.removed == 0) return fmt::format("{} pages, of which none has changed", report.pages);
+    return fmt::format("{} pages, of which {} are new or changed, and {} are gone, in {:.1f} s", report.pages,
+                       report.written, report.removed, report.seconds);
+  }
   const std::string resumed =
       report.resumed == 0 ? ""
                           : fmt::format(" ({} of them taken over from the build that was interrupted)", report.resumed);

@@ -76,14 +76,15 @@ Result<SourceSpec> SettingsFromJson(std::string_view text) {
 std::string StateOfFiles(const std::vector<std::string>& paths) {
   std::string state;
   for (const std::string& path : paths) {
+    const std::string name = std::filesystem::path(path).filename().string();
     struct stat found {};
     VSIStatBufL virtual_found{};
     if (stat(path.c_str(), &found) == 0) {
-      state += fmt::format("{} {} {}.{:09}\n", path, found.st_size, found.st_mtim.tv_sec, found.st_mtim.tv_nsec);
+      state += fmt::format("{} {} {}.{:09}\n", name, found.st_size, found.st_mtim.tv_sec, found.st_mtim.tv_nsec);
     } else if (VSIStatL(path.c_str(), &virtual_found) == 0) {
-      state += fmt::format("{} {} {}\n", path, virtual_found.st_size, virtual_found.st_mtime);
+      state += fmt::format("{} {} {}\n", name, virtual_found.st_size, virtual_found.st_mtime);
     } else {
-      state += fmt::format("{} is not there\n", path);
+      state += fmt::format("{} is not there\n", name);
     }
   }
   return state;

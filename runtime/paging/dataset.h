@@ -1,11 +1,12 @@
-// Dataset: the pages on disk, one LMDB store in a folder, read by many threads at once. docs/dataset-format.md has the
-// bytes.
+// Dataset: the pages on disk, an LMDB store in a folder and changes laid over it, read by many threads at once.
+// docs/dataset-format.md has the bytes.
 //
 // A layer is a pyramid of pages of one kind. The children of a quadnode exist all four or not at all; level 0 of every
 // layer has all 32 pages. Which pages exist is loaded at Open, so Exists touches no disk.
 //
 // A dataset is opened for reading alone (no lock file, no write permission needed) and is never changed in place: a
-// build makes a new store and moves it over the old one, which an open Dataset goes on reading.
+// build makes a new store and moves it over the old one, and what adds or removes a source lays one more over those
+// that are there. An open Dataset goes on reading what it has opened.
 //
 // Threads: all const methods, any thread; a read copies nothing but the decoded page.
 // Owns: the memory map, until destruction.
@@ -48,6 +49,8 @@ struct SourceRecord {
   int finest_level = 0;
   std::optional<double> utc_s{};          // when it was so, if the spec said
   std::optional<ColourFit> colour_fit{};  // imagery that was matched to what lies below it
+  std::string settings{};                 // the builder's: all that the spec said of it, a JSON object
+  std::string state{};                    // the builder's: of its files when they were read
 };
 
 struct LayerRecord {
@@ -60,6 +63,8 @@ struct LayerRecord {
   std::string vertical_reference;  // elevation: "WGS 84 ellipsoid", and the geoid that the sources were lifted by
   std::vector<SourceRecord> sources;
   std::optional<StepOf> step{};  // imagery: it is one step of a layer that changes with the time
+  int rules = 0;                 // the builder's: by which it makes pages of sources
+  bool finest_last = false;      // the builder's: sources are in the order of their resolution
 };
 
 class Dataset {
@@ -72,7 +77,7 @@ class Dataset {
   virtual const std::string& path() const = 0;
   virtual const std::vector<LayerRecord>& layers() const = 0;
   virtual const std::string& build_time() const = 0;  // ISO 8601, UTC
-  virtual int64_t bytes() const = 0;                  // size of the store
+  virtual int64_t bytes() const = 0;                  // size of the stores
   std::optional<int> FindLayer(std::string_view name) const;
   std::optional<int> FindLayer(LayerKind kind) const;  // the first of that kind
 

@@ -20,6 +20,8 @@ json SourceToJson(const SourceRecord& source) {
   if (source.nodata) out["nodata"] = *source.nodata;
   if (source.utc_s) out["time"] = FormatIsoTime(*source.utc_s);
   if (source.colour_fit) out["colour_fit"] = {{"gain", source.colour_fit->gain}, {"offset", source.colour_fit->offset}};
+  if (!source.settings.empty()) out["settings"] = json::parse(source.settings);
+  if (!source.state.empty()) out["state"] = source.state;
   return out;
 }
 
@@ -60,6 +62,8 @@ SourceRecord SourceFromJson(const json& in) {
     const json& fit = in.at("colour_fit");
     source.colour_fit = {fit.at("gain").get<std::array<double, 3>>(), fit.at("offset").get<std::array<double, 3>>()};
   }
+  if (in.contains("settings")) source.settings = in.at("settings").dump();
+  source.state = in.value("state", std::string());
   return source;
 }
 
@@ -75,6 +79,8 @@ json LayerToJson(const LayerRecord& layer) {
               {"vertical_reference", layer.vertical_reference},
               {"sources", sources}};
   if (layer.step) out["step_of"] = StepToJson(*layer.step);
+  if (layer.rules != 0) out["rules"] = layer.rules;
+  if (layer.finest_last) out["priority"] = "resolution";
   return out;
 }
 
@@ -92,6 +98,8 @@ LayerRecord LayerFromJson(const json& in) {
   layer.vertical_reference = in.at("vertical_reference").get<std::string>();
   for (const auto& source : in.at("sources")) layer.sources.push_back(SourceFromJson(source));
   if (in.contains("step_of") && layer.kind == LayerKind::kImagery) layer.step = StepFromJson(in.at("step_of"));
+  layer.rules = in.value("rules", 0);
+  layer.finest_last = in.value("priority", std::string()) == "resolution";
   return layer;
 }
 
@@ -100,10 +108,12 @@ LayerRecord LayerFromJson(const json& in) {
 std::string ToJson(const Metadata& metadata) {
   json layers = json::array();
   for (const auto& layer : metadata.layers) layers.push_back(LayerToJson(layer));
-  const json out = {{"format", "belvedere dataset"},
-                    {"version", kDatasetVersion},
-                    {"build_time", metadata.build_time},
-                    {"layers", layers}};
+  json out = {{"format", "belvedere dataset"},
+              {"version", kDatasetVersion},
+              {"build_time", metadata.build_time},
+              {"layers", layers}};
+  if (!metadata.id.empty()) out["id"] = metadata.id;
+  if (!metadata.over.empty()) out["over"] = metadata.over;
   return out.dump(1);
 }
 
@@ -117,6 +127,8 @@ Result<Metadata> FromJson(std::string_view text) {
     }
     Metadata metadata;
     metadata.build_time = in.at("build_time").get<std::string>();
+    metadata.id = in.value("id", std::string());
+    metadata.over = in.value("over", std::string());
     for (const auto& layer : in.at("layers")) metadata.layers.push_back(LayerFromJson(layer));
     if (metadata.layers.size() > static_cast<size_t>(kMaxDatasetLayers)) {
       return Status::Error("{} layers, more than {}", metadata.layers.size(), kMaxDatasetLayers);

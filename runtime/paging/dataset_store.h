@@ -26,6 +26,11 @@ inline constexpr std::string_view kStoreFile = "data.mdb";
 inline constexpr std::string_view kMadeOfKey = "made of";
 inline constexpr std::string_view kNotesKey = "notes";
 
+// Of a store that is laid over others: 1 lies on kStoreFile, each other on the one before.
+inline std::string ChangeFile(int number) {
+  return "change-" + std::to_string(number) + ".mdb";
+}
+
 using Key = std::array<uint8_t, kKeyBytes>;
 using DeviationsKey = std::array<uint8_t, kKeyBytes + 1>;
 
@@ -50,6 +55,8 @@ inline uint64_t WordOfKey(const uint8_t* key) {
 struct Metadata {
   std::string build_time;
   std::vector<LayerRecord> layers;
+  std::string id{};    // of this store: no other has it; empty where it was made before stores had one
+  std::string over{};  // of a change: id of the store under it
 };
 
 std::string ToJson(const Metadata& metadata);

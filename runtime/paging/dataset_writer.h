@@ -1,8 +1,9 @@
 // DatasetWriter: makes a dataset's store, in batches of pages, each batch one transaction.
 //
-// The store is written to PATH.partial and moved over PATH by Finish, so a build that fails or is killed leaves what
-// was at PATH before. What a writer that was killed had committed is taken up by the next that makes a dataset of the
-// same; any other throws it away. No two writers are at work on one path at a time.
+// The store is written to PATH.partial and moved into PATH by Finish, over the store and the changes that were there,
+// so a build that fails or is killed leaves what was at PATH before. What a writer that was killed had committed is
+// taken up by the next that makes a dataset of the same; any other throws it away. No two writers are at work on one
+// path at a time.
 //
 // Threads: Get, any; all else one at a time.
 #pragma once
@@ -17,6 +18,9 @@
 #include <vector>
 
 namespace belvedere {
+
+// An id that no other store has.
+std::string NewStoreId();
 
 class DatasetWriter {
  public:

@@ -2,7 +2,7 @@
 """Killed builds: whatever moment the builder is killed at, a whole dataset is there.
 
 Makes small sources and a dataset of them, then starts builds that would replace it and ends each with SIGKILL at a
-random moment; each goes on with what the one before has left. After each, `belvedere-build verify` must pass, and the dataset must hold the pages that it held before,
+random moment; each goes on with what the one before has left. Then the same with `add` and `remove`. After each, `belvedere-build verify` must pass, and the dataset must hold the pages that it held before,
 in a store of the same bytes, or, where the kill came too late, those of the new one. Prints how many were killed and what
 they left; exits 1 when one left something else.
 
@@ -119,6 +119,27 @@ def kill_builds(datasets, kills, chance):
     return tally
 
 
+def kill_changes(datasets, kills, chance):
+    """Additions of a source that is not there, removals of the one that is."""
+    tally = Tally()
+    datasets.run("old.toml", "--out", "dataset", "--no-report")
+    without = datasets.digest()
+    change_s = datasets.run("add", "dataset", "inset.toml", "--no-report")
+    within = datasets.digest()
+    is_there = True
+    while tally.killed < kills:
+        command = ("remove", "dataset", "inset.tif") if is_there else ("add", "dataset", "inset.toml")
+        was_killed = datasets.killed((*command, "--no-report"), chance.uniform(0, 1.05 * change_s))
+        found = datasets.digest()
+        old, new = (within, without) if is_there else (without, within)
+        tally.count(was_killed, found, old, new, True, f"{command[0]} {tally.killed}")
+        if found in (within, without):
+            is_there = found == within
+        if tally.problems:
+            break
+    return tally
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=pathlib.Path)
@@ -133,12 +154,17 @@ def main():
     write_noise(options.folder / "finer.tif", 2, 1024, -180, 90, 360 / 1024)
     datasets.write_spec("old.toml", ["world.tif"])
     datasets.write_spec("new.toml", ["world.tif", "finer.tif"])
+    datasets.write_spec("inset.toml", ["inset.tif"])
+    write_noise(options.folder / "inset.tif", 3, 1024, 10, 50, 0.005)
     chance = random.Random(options.seed)
-    tally = kill_builds(datasets, options.kills, chance)
-    print(tally.line("builds"))
-    for problem in tally.problems:
+    problems = []
+    for what, kill in (("builds", kill_builds), ("changes", kill_changes)):
+        tally = kill(datasets, options.kills, chance)
+        print(tally.line(what))
+        problems += tally.problems
+    for problem in problems:
         print(problem)
-    return 1 if tally.problems else 0
+    return 1 if problems else 0
 
 
 if __name__ == "__main__":

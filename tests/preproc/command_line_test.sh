@@ -65,6 +65,36 @@ grep -q 'is built, but not its report' "$folder/err" || fail "a report that cann
 expect 0 verify dataset
 grep -q "all 64 pages are good, digest [0-9a-f]\{8\}$" "$folder/out" || fail "verify says: $(cat "$folder/out")"
 
+# What is added, removed and made anew.
+tr 0 z <grey.pgm | sed '2s/.*/8 4/' >more.pgm
+cat >more.toml <<TEXT
+[[layer]]
+name = "elevation"
+kind = "elevation"
+  [[layer.source]]
+  path = "more.pgm"
+  georeference = [10, 40, 20, 50]
+TEXT
+expect 2 add dataset
+expect 2 remove dataset
+expect 1 add missing more.toml
+one_line
+[ -e missing ] || [ -e missing.partial ] && fail "add makes a folder where no dataset is"
+expect 0 add dataset more.toml
+one_line
+grep -q 'new or changed' "$folder/err" || fail "add says: $(cat "$folder/err")"
+expect 1 add dataset more.toml
+one_line
+expect 0 verify dataset
+expect 0 update dataset --json
+grep -q '"written": 0' "$folder/out" || fail "update of what has not changed: $(cat "$folder/out")"
+expect 1 remove dataset more.pgm --layer imagery
+one_line
+expect 0 remove dataset more.pgm --layer elevation --no-report
+one_line
+expect 0 verify dataset
+grep -q "all 64 pages are good" "$folder/out" || fail "verify after remove says: $(cat "$folder/out")"
+
 expect 2 export dataset --layer imagery
 expect 2 export dataset --layer imagery --out a.tif --level 23
 expect 2 export dataset --layer imagery --out a.tif --extent 1 2 3

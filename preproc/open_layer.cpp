@@ -1,0 +1,68 @@
+#include "preproc/open_layer.h"
+
+#include "preproc/source_path.h"
+
+#include <gdal_priv.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace belvedere {
+namespace {
+
+constexpr int64_t kGdalCacheBytes = int64_t{64} << 20;
+
+}  // namespace
+
+void OpenLayer::Add(std::unique_ptr<RasterSource> source) {
+  const Georeference& georeference = source->georeference();
+  plan.push_back({georeference.extent(), FinestLevel(georeference.spacing_deg(), spec.kind), georeference.spacing_deg(),
+                  source->spec().utc_s.has_value()});
+  sources.push_back(std::move(source));
+}
+
+void OpenLayer::PutInOrder() {
+  if (spec.priority != Priority::kResolution) return;
+  OpenLayer sorted;
+  for (const size_t place : PlacesByResolution(plan)) {
+    sorted.sources.push_back(std::move(sources[place]));
+    sorted.plan.push_back(plan[place]);
+  }
+  sources = std::move(sorted.sources);
+  plan = std::move(sorted.plan);
+}
+
+std::vector<RasterSource*> OpenLayer::pointers() const {
+  std::vector<RasterSource*> out;
+  out.reserve(sources.size());
+  for (const auto& source : sources) out.push_back(source.get());
+  return out;
+}
+
+LayerRecord OpenLayer::Record(const Geoid& geoid) const {
+  LayerRecord record;
+  record.name = spec.name;
+  record.kind = spec.kind;
+  record.step = spec.step;
+  record.rules = kBuilderRules;
+  record.finest_last = spec.priority == Priority::kResolution;
+  if (spec.kind == LayerKind::kElevation)
+    record.vertical_reference = "WGS 84 ellipsoid; mean sea level lifted by " + geoid.path();
+  for (size_t i = 0; i < sources.size(); ++i) {
+    record.sources.push_back(sources[i]->Record());
+    record.sources.back().finest_level = plan[i].finest_level;
+  }
+  return record;
+}
+
+void PrepareGdal(std::span<const LayerSpec> layers) {
+  GDALAllRegister();
+  CPLSetErrorHandler(CPLQuietErrorHandler);
+  GDALSetCacheMax64(kGdalCacheBytes);
+  KeepOffNetwork(!std::any_of(layers.begin(), layers.end(), [](const LayerSpec& layer) {
+    return std::any_of(layer.sources.begin(), layer.sources.end(),
+                       [](const SourceSpec& source) { return NamesServer(source.path); });
+  }));
+}
+
+}  // namespace belvedere

@@ -1,0 +1,39 @@
+// OpenLayer: a layer of the spec with its sources open, the best last.
+//
+// Threads: values; sources are for any thread.
+#pragma once
+
+#include "preproc/colour_match.h"
+#include "preproc/plan.h"
+#include "preproc/raster_source.h"
+#include "preproc/spec.h"
+#include "runtime/earth/geoid.h"
+
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace belvedere {
+
+// Raised whenever the builder makes other pages of the same sources than it did: pages by two rules do not fit
+// together.
+inline constexpr int kBuilderRules = 1;
+
+struct OpenLayer {
+  LayerSpec spec;
+  std::vector<std::unique_ptr<RasterSource>> sources;
+  std::vector<PlannedSource> plan;  // of the sources
+  std::vector<Unmatched> unmatched;
+
+  void Add(std::unique_ptr<RasterSource> source);
+  // Once all are added: the finest comes last where the spec asks for it.
+  void PutInOrder();
+  std::vector<RasterSource*> pointers() const;
+  // All that the dataset says of it but for its pages' counts.
+  LayerRecord Record(const Geoid& geoid) const;
+};
+
+// Before any source is opened: GDAL's drivers and caches, and the network only where a source asks for it.
+void PrepareGdal(std::span<const LayerSpec> layers);
+
+}  // namespace belvedere

@@ -1,0 +1,260 @@
+#include "preproc/update.h"
+
+#include "preproc/changed_extents.h"
+#include "preproc/dataset_spec.h"
+#include "preproc/layer_builder.h"
+#include "preproc/open_layer.h"
+#include "preproc/page_sink.h"
+#include "runtime/base/iso_time.h"
+#include "runtime/base/log.h"
+#include "runtime/base/mutex.h"
+#include "runtime/paging/change_writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace belvedere {
+namespace {
+
+// Pages of the dataset as it was, where nothing touches them.
+class UnchangedPages final : public KnownPages {
+ public:
+  explicit UnchangedPages(const Dataset& dataset) : dataset_(dataset) {}
+
+  // Of the next layer: where its sources change.
+  void Add(std::vector<GeoBox> extents) { extents_.push_back(std::move(extents)); }
+  bool AnyChange() const {
+    return std::any_of(extents_.begin(), extents_.end(), [](const auto& extents) { return !extents.empty(); });
+  }
+
+  bool Knows(int layer, Quadcode node) const override {
+    return Exists(layer, node) &&
+           !Touches(extents_[static_cast<size_t>(layer)], dataset_.layers()[static_cast<size_t>(layer)].kind, node);
+  }
+  bool Exists(int layer, Quadcode node) const override {
+    return static_cast<size_t>(layer) < dataset_.layers().size() && dataset_.Exists(layer, node);
+  }
+  std::optional<std::vector<uint8_t>> Page(int layer, Quadcode node) const override {
+    return dataset_.ReadRaw(layer, node);
+  }
+  std::optional<std::vector<uint8_t>> Deviations(int layer, Quadcode node) const override {
+    return dataset_.ReadDeviations(layer, node);
+  }
+
+  void Take(int layer, Quadcode node) override EXCLUDES_LOCK(mutex_) {
+    const MutexLock lock(mutex_);
+    taken_.insert({layer, node.word()});
+  }
+  bool IsTaken(int layer, Quadcode node) const EXCLUDES_LOCK(mutex_) {
+    const MutexLock lock(mutex_);
+    return taken_.contains({layer, node.word()});
+  }
+
+ private:
+  const Dataset& dataset_;
+  std::vector<std::vector<GeoBox>> extents_;  // by layer
+  mutable Mutex mutex_;
+  std::set<std::pair<int, uint64_t>> taken_ GUARDED_BY(mutex_);  // layers and quadcode words
+};
+
+class Updater {
+ public:
+  Updater(const BuildOptions& options, const Clock& clock)
+      : options_(options), clock_(clock), jobs_(WorkersOf(options.jobs)), cache_(options.cache_bytes) {}
+
+  Result<BuildReport> Run(const SpecChange& change) {
+    const double start_s = clock_.NowSeconds();
+    report_.jobs = jobs_;
+    report_.rounds = 1;
+    report_.is_change = true;
+    if (Status status = Apply(change, start_s); !status.ok()) return status;
+    if (Status status = Describe(); !status.ok()) return status;
+    report_.seconds = clock_.NowSeconds() - start_s;
+    report_.finishing_s = report_.seconds - report_.opening_s - report_.pages_s;
+    return std::move(report_);
+  }
+
+ private:
+  Status Apply(const SpecChange& change, double start_s) {
+    const auto writer = ChangeWriter::Create(options_.out);
+    if (!writer.ok()) return writer.status();
+    const Dataset& before = (*writer)->before();
+    auto spec = SpecOf(before);
+    if (spec.ok()) spec = change(std::move(*spec));
+    if (!spec.ok()) return spec.status();
+    PrepareGdal(spec->layers);
+    const auto geoid = Geoid::LoadEgm96();
+    if (!geoid.ok()) return geoid.status();
+    if (Status status = OpenSources(*spec); !status.ok()) return status;
+    for (OpenLayer& layer : layers_) {
+      if (layer.spec.kind == LayerKind::kImagery) layer.unmatched = MatchColours(layer.pointers(), **geoid);
+    }
+    std::vector<LayerRecord> records;
+    records.reserve(layers_.size());
+    for (const OpenLayer& layer : layers_) records.push_back(layer.Record(**geoid));
+    UnchangedPages unchanged(before);
+    if (Status status = Compare(before, records, unchanged); !status.ok()) return status;
+    report_.opening_s = clock_.NowSeconds() - start_s;
+    if (!unchanged.AnyChange()) return {};
+    if (Status status = MakePages(**geoid, unchanged, **writer); !status.ok()) return status;
+    report_.pages_s = clock_.NowSeconds() - start_s - report_.opening_s;
+    if (Status status = RemoveGone(unchanged, **writer); !status.ok()) return status;
+    report_.written = (*writer)->written();
+    report_.removed = (*writer)->removed();
+    return (*writer)->Finish(std::move(records), FormatIsoTime(std::floor(clock_.UtcSeconds())));
+  }
+
+  Status OpenSources(const BuildSpec& spec) {
+    int number = 0;
+    for (const LayerSpec& layer_spec : spec.layers) {
+      OpenLayer layer;
+      layer.spec = layer_spec;
+      for (const SourceSpec& source_spec : layer_spec.sources) {
+        auto source = RasterSource::Open(source_spec, layer_spec.kind, number++, jobs_, cache_);
+        if (!source.ok()) return Refusal(source_spec, source.message());
+        layer.Add(std::move(*source));
+      }
+      layer.PutInOrder();
+      layers_.push_back(std::move(layer));
+    }
+    return {};
+  }
+
+  Status Refusal(const SourceSpec& source, const std::string& reason) const {
+    return Status::Error("{}: {}; the dataset {} is unchanged", source.path, reason, options_.out);
+  }
+
+  // What of the dataset stays, and whether it can.
+  Status Compare(const Dataset& before, const std::vector<LayerRecord>& after, UnchangedPages& unchanged) {
+    for (size_t layer = 0; layer < after.size(); ++layer) {
+      const bool is_new = layer >= before.layers().size();
+      const LayerRecord* old = is_new ? nullptr : &before.layers()[layer];
+      if (old != nullptr && old->vertical_reference != after[layer].vertical_reference) {
+        return Status::Error("{}: its heights are above \"{}\", those of this machine above \"{}\"; build it again",
+                             options_.out, old->vertical_reference, after[layer].vertical_reference);
+      }
+      std::vector<GeoBox> extents = ChangedExtents(
+          is_new ? std::span<const SourceRecord>() : std::span<const SourceRecord>(old->sources), after[layer].sources,
+          [&](size_t place) {
+            return after[layer].kind == LayerKind::kElevation && layers_[layer].sources[place]->HasVoids();
+          });
+      FindChanged(layer, old);
+      unchanged.Add(std::move(extents));
+    }
+    return {};
+  }
+
+  // Sources that the layer did not have, or not so.
+  void FindChanged(size_t layer, const LayerRecord* before) {
+    for (const auto& source : layers_[layer].sources) {
+      const SourceRecord record = source->Record();
+      const bool was_there =
+          before != nullptr &&
+          std::any_of(before->sources.begin(), before->sources.end(), [&](const SourceRecord& other) {
+            return other.settings == record.settings && other.state == record.state;
+          });
+      if (!was_there) changed_.push_back(source.get());
+    }
+  }
+
+  Status MakePages(const Geoid& geoid, UnchangedPages& unchanged, ChangeWriter& writer) {
+    PageSink sink(writer, options_.batch_bytes, [] { return std::string(); });
+    int64_t planned = 0;
+    for (const OpenLayer& layer : layers_) planned += CountNodes(layer.plan);
+    std::optional<Progress> progress;
+    if (options_.show_progress)
+      progress.emplace(planned, clock_, [&sink] { return Progress::Written{sink.pages(), sink.bytes()}; });
+    std::vector<std::unique_ptr<LayerBuilder>> builders;
+    for (size_t i = 0; i < layers_.size(); ++i) {
+      builders.push_back(std::make_unique<LayerBuilder>(static_cast<int>(i), layers_[i], geoid, sink, &unchanged,
+                                                        progress ? &*progress : nullptr));
+    }
+    BuildAllTrees(builders, jobs_);
+    const Status written = sink.Close();
+    for (const OpenLayer& layer : layers_) {
+      for (const auto& source : layer.sources) {
+        if (!source->failure().ok()) return Refusal(source->spec(), source->failure().message());
+      }
+    }
+    for (const OpenLayer& layer : layers_) {
+      for (const Unmatched& unmatched : layer.unmatched) Warn(unmatched.source->spec().written_path, unmatched.reason);
+    }
+    return written.ok() ? CheckChanged() : written;
+  }
+
+  Status CheckChanged() {
+    for (RasterSource* source : changed_) {
+      const std::string& path = source->spec().written_path;
+      if (!source->used() && !source->HasData())
+        return Refusal(source->spec(), "it covers nothing: no pixel is valid; check its nodata and mask");
+      if (!source->remark().empty()) Warn(path, source->remark());
+      if (!source->used()) Warn(path, "nothing of it is seen: later sources cover it all");
+    }
+    return {};
+  }
+
+  void Warn(const std::string& path, const std::string& reason) {
+    report_.warnings.push_back({path, reason});
+    LogWarning("{}: {}", path, reason);
+  }
+
+  // Pages that were there and are none of what the dataset is made of now.
+  static Status RemoveGone(const UnchangedPages& unchanged, ChangeWriter& writer) {
+    for (size_t layer = 0; layer < writer.before().layers().size(); ++layer) {
+      for (int tree = 0; tree < kTrees; ++tree) {
+        Status status = RemoveGoneFrom(unchanged, static_cast<int>(layer), Quadcode::Root(tree), writer);
+        if (!status.ok()) return status;
+      }
+    }
+    return {};
+  }
+
+  static Status RemoveGoneFrom(const UnchangedPages& unchanged, int layer, Quadcode node, ChangeWriter& writer) {
+    if (!unchanged.Exists(layer, node) || unchanged.IsTaken(layer, node)) return {};
+    if (!writer.WasPut(layer, node)) {
+      if (Status status = writer.Remove(layer, node); !status.ok()) return status;
+    }
+    for (int which = 0; which < 4 && node.level() < kMaxLevel; ++which) {
+      if (Status status = RemoveGoneFrom(unchanged, layer, node.Child(which), writer); !status.ok()) return status;
+    }
+    return {};
+  }
+
+  Status Describe() {
+    const auto dataset = Dataset::Open(options_.out);
+    if (!dataset.ok()) return dataset.status();
+    report_.layers = (*dataset)->layers();
+    report_.bytes = (*dataset)->bytes();
+    for (const LayerRecord& layer : report_.layers) report_.pages += layer.pages;
+    for (const OpenLayer& layer : layers_) {
+      for (const auto& source : layer.sources) report_.bytes_read += source->bytes_read();
+    }
+    return {};
+  }
+
+  const BuildOptions& options_;
+  const Clock& clock_;
+  const int jobs_;
+  BlockCache cache_;
+  std::vector<OpenLayer> layers_;  // go before the cache
+  std::vector<RasterSource*> changed_;
+  BuildReport report_;
+};
+
+}  // namespace
+
+Result<BuildReport> Update(const SpecChange& change, const BuildOptions& options, const Clock& clock) {
+  try {
+    return Updater(options, clock).Run(change);
+  } catch (const std::exception& problem) {
+    return Status::Error("{}: the change broke off: {}; it is as it was", options.out, problem.what());
+  }
+}
+
+}  // namespace belvedere
