@@ -58,6 +58,7 @@ class StoreStack::File {
 
   // folder: for messages.
   Status Load(const std::string& folder, const std::string& file) {
+    path_ = file;
     struct stat found {};
     if (stat(file.c_str(), &found) != 0) {
       return Status::Error("{}: no dataset here (there is no {} in it); make one with belvedere-build", folder,
@@ -81,9 +82,10 @@ class StoreStack::File {
 
   const store::Metadata& metadata() const { return metadata_; }
   int64_t bytes() const { return bytes_; }
-  bool IsStillAt(const std::string& file) const {
+  // Nothing has been moved over it since.
+  bool IsInPlace() const {
     struct stat found {};
-    return stat(file.c_str(), &found) == 0 && found.st_ino == inode_;
+    return stat(path_.c_str(), &found) == 0 && found.st_ino == inode_;
   }
 
   enum class Found { kNothing, kGone, kValue };
@@ -138,6 +140,7 @@ class StoreStack::File {
     return {};
   }
 
+  std::string path_;
   int64_t bytes_ = 0;
   ino_t inode_ = 0;
   MDB_env* env_ = nullptr;
@@ -151,13 +154,16 @@ StoreStack::~StoreStack() = default;
 
 Result<std::unique_ptr<StoreStack>> StoreStack::Open(const std::string& folder) {
   std::unique_ptr<StoreStack> stack(new StoreStack());
-  const std::string lowest = folder + "/" + std::string(store::kStoreFile);
-  // Where another dataset is moved in meanwhile, the changes that were looked at may have been the new one's.
-  do {
+  for (;;) {
     stack->files_.clear();
-    if (Status status = stack->OpenFiles(folder); !status.ok()) return status;
-  } while (!stack->files_.front()->IsStillAt(lowest));
-  return stack;
+    Status status = stack->OpenFiles(folder);
+    // Where a store is moved over one of these meanwhile, those above it are removed: what was found was half of each.
+    const bool whole =
+        std::all_of(stack->files_.begin(), stack->files_.end(), [](const auto& file) { return file->IsInPlace(); });
+    if (!whole) continue;
+    if (!status.ok()) return status;
+    return stack;
+  }
 }
 
 Status StoreStack::OpenFiles(const std::string& folder) {

@@ -5,11 +5,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace belvedere {
@@ -148,6 +150,32 @@ TEST(ChangeWriter, ChangesOfAnotherDatasetAreNotLookedAt) {
   EXPECT_TRUE(writer->Put(0, Quadcode::Root(3), {34}).ok());
   EXPECT_TRUE(writer->Finish(Layers(), "third").ok());
   EXPECT_EQ(MustOpen(path)->ReadRaw(0, Quadcode::Root(3)), Bytes{34});
+}
+
+// Changes that are taken in by a ninth leave, between two steps of the writer, a stack that is older than the one
+// before.
+TEST(ChangeWriter, WhoOpensMeanwhileNeverGoesBack) {
+  const std::string path = MakeDataset("meanwhile");
+  constexpr uint8_t kChanges = 100;
+  const auto write = [&path](uint8_t value) {
+    const auto writer = MustChange(path);
+    EXPECT_TRUE(writer->Put(0, Quadcode::Root(0), {value}).ok());
+    EXPECT_TRUE(writer->Finish(Layers(), "later").ok());
+  };
+  write(1);
+  std::thread writer([&write] {
+    for (uint8_t value = 2; value <= kChanges; ++value) write(value);
+  });
+  uint8_t seen = 0;
+  while (seen < kChanges) {
+    const auto dataset = Dataset::Open(path);
+    const auto bytes = dataset.ok() ? (*dataset)->ReadRaw(0, Quadcode::Root(0)) : std::nullopt;
+    EXPECT_TRUE(bytes) << dataset.message();
+    if (!bytes) break;
+    EXPECT_GE(bytes->front(), seen);
+    seen = std::max(seen, bytes->front());
+  }
+  writer.join();
 }
 
 TEST(ChangeWriter, ADamagedChangeIsNotPassedOver) {
