@@ -97,7 +97,7 @@ TEST(Resume, AKilledBuildGoesOnToTheSamePages) {
   ASSERT_TRUE(Succeeds([&] { return BuildIn(folder, spec, "whole").ok(); }));
   const uintmax_t whole_bytes = fs::file_size(folder + "/whole/data.mdb");
   // Killed again and again, each time further on.
-  for (const uintmax_t tenths : {2, 4, 6, 8}) ASSERT_TRUE(IsKilledAt(folder, spec, whole_bytes * tenths / 10));
+  for (const uintmax_t tenths : {2U, 4U, 6U, 8U}) ASSERT_TRUE(IsKilledAt(folder, spec, whole_bytes * tenths / 10));
   EXPECT_FALSE(fs::exists(folder + "/out"));
   const int64_t resumed = Resumed(folder, spec);
   const auto whole = Dataset::Open(folder + "/whole");
