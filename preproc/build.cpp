@@ -2,6 +2,7 @@
 
 #include "preproc/colour_match.h"
 #include "preproc/layer_builder.h"
+#include "preproc/mosaic.h"
 #include "preproc/resumed_pages.h"
 #include "preproc/source_settings.h"
 #include "runtime/base/iso_time.h"
@@ -32,6 +33,10 @@ class Builder {
     const double start_s = clock_.NowSeconds();
     report_.jobs = jobs_;
     PrepareGdal(spec_.layers);
+    for (UnusableFile& file : ExpandMosaics(spec_)) {
+      LogWarning("{}: skipped: {}", file.path, file.reason);
+      report_.skipped.push_back({std::move(file.path), std::move(file.reason)});
+    }
     auto geoid = Geoid::LoadEgm96();
     if (!geoid.ok()) return geoid.status();
     // Each round without what the one before found to be useless; so at most one more than there are sources.
@@ -70,12 +75,12 @@ class Builder {
  private:
   // A source without a time is in every step of a layer: it is left out of all.
   static std::string KeyOf(const LayerSpec& layer, const SourceSpec& source) {
-    return (layer.step ? layer.step->layer : layer.name) + "\n" + source.written_path;
+    return (layer.step ? layer.step->layer : layer.name) + "\n" + SettingsToJson(source);
   }
 
   void Exclude(const LayerSpec& layer, const SourceSpec& source, const std::string& reason) {
     if (!excluded_.insert({KeyOf(layer, source), reason}).second) return;
-    report_.skipped.push_back({source.written_path, reason});
+    report_.skipped.push_back({NameOf(source), reason});
     LogWarning("{}: skipped: {}", source.path, reason);
   }
 
@@ -224,14 +229,14 @@ class Builder {
 
   void Warn(const RasterSource& source, const std::string& reason) {
     const bool said = std::any_of(report_.warnings.begin(), report_.warnings.end(), [&](const SourceRemark& remark) {
-      return remark.source == source.spec().written_path && remark.reason == reason;
+      return remark.source == NameOf(source.spec()) && remark.reason == reason;
     });
     if (said) return;  // of another step
-    report_.warnings.push_back({source.spec().written_path, reason});
+    report_.warnings.push_back({NameOf(source.spec()), reason});
     LogWarning("{}: {}", source.spec().path, reason);
   }
 
-  const BuildSpec& spec_;
+  BuildSpec spec_;  // the files that it names put together
   const BuildOptions& options_;
   const Clock& clock_;
   const int jobs_;

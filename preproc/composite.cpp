@@ -42,10 +42,6 @@ uint8_t Byte(float value) {
   return static_cast<uint8_t>(std::clamp(value, 0.0f, 255.0f) + 0.5f);
 }
 
-double AboveEllipsoid_m(const SourceSpec& spec, double undulation_m) {
-  return spec.datum == VerticalDatum::kEgm96 ? undulation_m : spec.datum_m;
-}
-
 // What is still to be covered, position by position.
 struct Remaining {
   explicit Remaining(size_t count) : shares(count, 1.0f) {}
@@ -112,7 +108,8 @@ Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, double spaci
     SourceSampler& sampler = samplers_[which];
     if (!MayCover(sampler, lattice)) continue;
     const Samples<double> samples = sampler.Sample<double>(lattice, spacing_deg);
-    const SourceSpec& spec = sampler.source().spec();
+    const std::vector<double> datum_m =
+        sampler.source().DatumHeights(lattice.latitudes_deg, lattice.longitudes_deg, undulation);
     const int32_t quantum_mm = QuantumOfSource_mm(sampler.source().precision_m());
     bool used = false;
     for (size_t i = 0; i < count; ++i) {
@@ -122,11 +119,11 @@ Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, double spaci
                                lattice.latitudes_deg[i / columns]);
         heights.metres[i] += static_cast<double>(remaining.shares[i] * samples.void_weights[i]) * delta_m;
       }
-      if (samples.weights[i] <= 0) continue;
+      if (samples.weights[i] <= 0 || std::isnan(datum_m[i])) continue;
       const float part = remaining.Take(i, samples.weights[i]);
       used = true;
       if (part <= 0) continue;
-      heights.metres[i] += static_cast<double>(part) * (samples.values[i] + AboveEllipsoid_m(spec, undulation[i]));
+      heights.metres[i] += static_cast<double>(part) * (samples.values[i] + datum_m[i]);
       int32_t& finest_mm = heights.quanta_mm[i];
       finest_mm = finest_mm == 0 ? quantum_mm : std::min(finest_mm, quantum_mm);
     }
@@ -141,14 +138,16 @@ VoidFill::Ground Composite::GroundOf(size_t which, const LatticeRows& lattice, i
   const double spacing_deg = std::ldexp(kTreeDegrees / kCells, -level);
   const Samples<double> samples = samplers_[which].Sample<double>(lattice, spacing_deg, false);
   const std::vector<double> undulation = geoid_.Heights(lattice.latitudes_deg, lattice.longitudes_deg);
-  const SourceSpec& spec = samplers_[which].source().spec();
+  const std::vector<double> datum_m =
+      samplers_[which].source().DatumHeights(lattice.latitudes_deg, lattice.longitudes_deg, undulation);
   VoidFill::Ground ground{{}, samples.values, HeightsAt(lattice, spacing_deg, level, which + 1).metres};
   for (size_t i = 0; i < samples.weights.size(); ++i) {
-    ground.source_m[i] += AboveEllipsoid_m(spec, undulation[i]);
+    const bool has_datum = !std::isnan(datum_m[i]);
+    ground.source_m[i] += has_datum ? datum_m[i] : 0.0;
     const bool is_void = !samples.void_weights.empty() && samples.void_weights[i] > 0;
-    ground.posts.push_back(samples.weights[i] > 0 ? DeltaGrid::Post::kValid
-                           : is_void              ? DeltaGrid::Post::kVoid
-                                                  : DeltaGrid::Post::kOutside);
+    ground.posts.push_back(samples.weights[i] > 0 && has_datum ? DeltaGrid::Post::kValid
+                           : is_void                           ? DeltaGrid::Post::kVoid
+                                                               : DeltaGrid::Post::kOutside);
   }
   return ground;
 }

@@ -12,6 +12,13 @@
 
 namespace belvedere {
 
+// Of this thread since CPLErrorReset. One line.
+inline std::string LastGdalError() {
+  std::string text = CPLGetLastErrorMsg();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text.empty() ? "GDAL gives no reason" : text;
+}
+
 class GdalErrors {
  public:
   GdalErrors() { CPLPushErrorHandlerEx(Take, this); }

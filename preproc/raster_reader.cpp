@@ -1,5 +1,8 @@
 #include "preproc/raster_reader.h"
 
+#include "preproc/gdal_errors.h"
+#include "preproc/mosaic.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -11,12 +14,6 @@ namespace {
 // Heights outside are no heights on Earth: an undeclared nodata value, most likely.
 constexpr double kLowestHeight_m = -20000;
 constexpr double kHighestHeight_m = 100000;
-
-std::string LastGdalError() {
-  std::string text = CPLGetLastErrorMsg();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text.empty() ? "GDAL gives no reason" : text;
-}
 
 double MetresPerUnit(std::string_view unit) {
   if (unit == "ft" || unit == "foot" || unit == "feet") return 0.3048;
@@ -34,6 +31,9 @@ bool SameNodata(double value, double nodata) {
 
 Result<std::unique_ptr<RasterReader>> RasterReader::Open(const SourceSpec& spec, LayerKind kind, int handles) {
   std::unique_ptr<RasterReader> reader(new RasterReader(spec, kind));
+  auto path = PathToOpen(spec);
+  if (!path.ok()) return path.status();
+  reader->path_ = std::move(*path);
   auto first = reader->OpenHandle();
   if (!first.ok()) return first.status();
   reader->first_ = first->get();
@@ -46,8 +46,7 @@ Result<std::unique_ptr<RasterReader>> RasterReader::Open(const SourceSpec& spec,
 
 Result<DatasetHandle> RasterReader::OpenHandle() const {
   CPLErrorReset();
-  GDALDataset* dataset =
-      GDALDataset::Open(spec_.path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR);
+  GDALDataset* dataset = GDALDataset::Open(path_.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR);
   if (dataset == nullptr)
     return Status::Error("it cannot be opened ({}); check its path and the file", LastGdalError());
   return DatasetHandle(dataset);
@@ -66,6 +65,9 @@ Status RasterReader::Inspect() {
   nodata_ = spec_.nodata;
   if (!nodata_ && has_nodata != 0) nodata_ = own;
   has_mask_ = (band.GetMaskFlags() & GMF_PER_DATASET) != 0 && (band.GetMaskFlags() & GMF_ALPHA) == 0;
+  for (int i = 2; i <= dataset.GetRasterCount(); ++i) {
+    if (dataset.GetRasterBand(i)->GetColorInterpretation() == GCI_AlphaBand) alpha_band_ = i;
+  }
   int block_width = 0, block_height = 0;
   band.GetBlockSize(&block_width, &block_height);
   const std::string driver = dataset.GetDriverName();
@@ -77,7 +79,16 @@ Status RasterReader::Inspect() {
 
 void RasterReader::InspectHeights() {
   GDALRasterBand& band = *first_->GetRasterBand(1);
-  const double unit = spec_.metres_per_unit ? *spec_.metres_per_unit : MetresPerUnit(band.GetUnitType());
+  OGRSpatialReference crs;
+  if (spec_.crs)
+    crs.SetFromUserInput(spec_.crs->c_str());
+  else if (const OGRSpatialReference* own = first_->GetSpatialRef(); own != nullptr)
+    crs = *own;
+  declared_heights_ = HeightsDeclaredBy(crs);
+  const std::string_view written = band.GetUnitType();
+  const double unit = spec_.metres_per_unit ? *spec_.metres_per_unit
+                      : written.empty()     ? declared_heights_.metres_per_unit.value_or(1.0)
+                                            : MetresPerUnit(written);
   scale_ = band.GetScale() * unit;
   offset_ = band.GetOffset() * unit;
   if (GDALDataTypeIsInteger(band.GetRasterDataType()) != 0) precision_m_ = std::abs(scale_);
@@ -86,9 +97,6 @@ void RasterReader::InspectHeights() {
 Status RasterReader::InspectColours() {
   GDALDataset& dataset = *first_;
   const int bands = dataset.GetRasterCount();
-  for (int i = 1; i <= bands; ++i) {
-    if (dataset.GetRasterBand(i)->GetColorInterpretation() == GCI_AlphaBand) alpha_band_ = i;
-  }
   const int colours = bands - (alpha_band_ != 0 ? 1 : 0);
   if (colours == 2) remark_ = "its second band is not said to be alpha and is left out";
   colour_bands_ = colours >= 3 ? std::vector<int>{1, 2, 3} : std::vector<int>{1};
@@ -175,7 +183,8 @@ Status RasterReader::ReadHeights(GDALDataset& dataset, const std::array<int, 4>&
     out.heights[i] = good ? static_cast<float>(height_m) : 0.0f;
     if (!good) out.coverage[i] = 0;
   }
-  return {};
+  if (alpha_band_ == 0) return {};
+  return ReadAlpha(dataset, window, out);
 }
 
 Status RasterReader::ReadColours(GDALDataset& dataset, const std::array<int, 4>& window, Block& out,
@@ -223,7 +232,9 @@ Status RasterReader::ReadColours(GDALDataset& dataset, const std::array<int, 4>&
 Status RasterReader::ReadAlpha(GDALDataset& dataset, const std::array<int, 4>& window, Block& out) const {
   const auto [x, y, width, height] = window;
   GDALRasterBand& band = *dataset.GetRasterBand(alpha_band_);
-  const float scale = band.GetRasterDataType() == GDT_UInt16 ? 255.0F / 65535.0F : 1.0F;
+  // As GDAL's warper writes it.
+  const GDALDataType type = band.GetRasterDataType();
+  const float scale = 255.0F / (type == GDT_UInt16 ? 65535.0F : type == GDT_Int16 ? 32767.0F : 255.0F);
   std::vector<float> alpha(out.coverage.size());
   if (band.RasterIO(GF_Read, x, y, width, height, alpha.data(), width, height, GDT_Float32, 0, 0, nullptr) != CE_None) {
     return Status::Error("it is truncated or damaged: {}", LastGdalError());

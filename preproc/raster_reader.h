@@ -7,6 +7,7 @@
 
 #include "preproc/raster_source.h"
 #include "preproc/spec.h"
+#include "preproc/vertical_datum.h"
 #include "runtime/base/mutex.h"
 #include "runtime/base/status.h"
 
@@ -35,6 +36,8 @@ class RasterReader {
   int height() const { return height_; }
   std::optional<double> nodata() const { return nodata_; }
   const std::string& remark() const { return remark_; }
+  // Elevation: what its CRS, or the spec's for it, says of heights.
+  const DeclaredHeights& declared_heights() const { return declared_heights_; }
   // Elevation: the step between two heights, where pixels are integers; 0 where they are not.
   double precision_m() const { return precision_m_; }
   // Whether a whole row of blocks is best read at once.
@@ -58,6 +61,7 @@ class RasterReader {
 
   const SourceSpec spec_;
   const LayerKind kind_;
+  std::string path_;              // that GDAL opens
   GDALDataset* first_ = nullptr;  // the first of the handles, for whoever inspects before anybody reads
   int width_ = 0, height_ = 0;
   std::optional<double> nodata_;
@@ -69,6 +73,7 @@ class RasterReader {
   std::vector<std::array<uint8_t, 4>> palette_;
   bool row_by_row_ = false;
   std::string remark_;
+  DeclaredHeights declared_heights_;
 
   Mutex mutex_;
   CondVar returned_;

@@ -2,6 +2,7 @@
 
 #include "preproc/raster_reader.h"
 #include "preproc/source_settings.h"
+#include "preproc/vertical_datum.h"
 
 #include <algorithm>
 #include <bit>
@@ -114,6 +115,8 @@ Result<std::unique_ptr<RasterSource>> RasterSource::Open(const SourceSpec& spec,
   source->georeference_ = std::move(*georeference);
   source->width_ = source->reader_->width();
   source->height_ = source->reader_->height();
+  source->remark_ = source->reader_->remark();
+  if (Status status = kind == LayerKind::kElevation ? source->FindDatum() : Status(); !status.ok()) return status;
   source->state_ = StateOf(source->reader_->dataset(), spec, *source->georeference_);
   const GeoBox& extent = source->georeference_->extent();
   if (!(extent.south_deg < 90 && extent.north_deg > -90 && extent.east_deg - extent.west_deg < 361)) {
@@ -121,6 +124,7 @@ Result<std::unique_ptr<RasterSource>> RasterSource::Open(const SourceSpec& spec,
         "it covers nothing of the Earth (west {}, south {}, east {}, north {}); correct its georeference or crs",
         extent.west_deg, extent.south_deg, extent.east_deg, extent.north_deg);
   }
+  if (source->datum_grid_) source->state_ += StateOfFiles({source->datum_grid_->path()});
   source->pyramid_levels_ =
       source->georeference_->wraps() ? std::countr_zero(static_cast<unsigned>(source->width_)) : kDeepestPyramid;
   return source;
@@ -137,9 +141,7 @@ SourceRecord RasterSource::Record() const {
   record.settings = SettingsToJson(spec_);
   record.state = state_;
   if (kind_ == LayerKind::kElevation) {
-    record.datum = spec_.datum == VerticalDatum::kEgm96       ? "egm96"
-                   : spec_.datum == VerticalDatum::kEllipsoid ? "ellipsoid"
-                                                              : fmt::format("{}", spec_.datum_m);
+    record.datum = datum_name_;
   }
   return record;
 }
@@ -148,8 +150,46 @@ double RasterSource::precision_m() const {
   return reader_->precision_m();
 }
 
-const std::string& RasterSource::remark() const {
-  return reader_->remark();
+// What the spec says, else the file, else EGM96.
+Status RasterSource::FindDatum() {
+  datum_ = spec_.datum;
+  std::string grid = spec_.datum_grid;
+  const DeclaredHeights declared = reader_->declared_heights();
+  const bool is_declared = spec_.datum == VerticalDatum::kDeclared;
+  if (is_declared) {
+    datum_ = declared.datum.value_or(VerticalDatum::kEgm96);
+    grid = declared.grid;
+  }
+  std::string reason = declared.name.empty() || declared.datum ? "" : "which is not known here";
+  if (datum_ == VerticalDatum::kGrid) {
+    auto loaded = LoadGeoidGrid(grid, georeference_->extent());
+    if (loaded.ok())
+      datum_grid_ = std::move(*loaded);
+    else if (!is_declared)
+      return loaded.status();
+    else
+      reason = loaded.message();
+  }
+  if (is_declared && !reason.empty()) {
+    datum_ = VerticalDatum::kEgm96;
+    remark_ += fmt::format(
+        "{}its heights are above {} ({}) and are taken as above EGM96, which may be metres off; give "
+        "it a datum",
+        remark_.empty() ? "" : "; ", declared.name, reason);
+  }
+  datum_name_ = datum_ == VerticalDatum::kEgm96       ? "egm96"
+                : datum_ == VerticalDatum::kEllipsoid ? "ellipsoid"
+                : datum_ == VerticalDatum::kOffset    ? fmt::format("{}", spec_.datum_m)
+                                                      : grid;
+  return {};
+}
+
+std::vector<double> RasterSource::DatumHeights(std::span<const double> latitudes_deg,
+                                               std::span<const double> longitudes_deg,
+                                               const std::vector<double>& undulation_m) const {
+  if (datum_ == VerticalDatum::kEgm96) return undulation_m;
+  if (datum_grid_) return datum_grid_->Heights(latitudes_deg, longitudes_deg);
+  return std::vector<double>(undulation_m.size(), datum_ == VerticalDatum::kOffset ? spec_.datum_m : 0.0);
 }
 
 uint64_t RasterSource::KeyOf(Plane plane, int pyramid_level, int column, int row) const {

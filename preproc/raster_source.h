@@ -14,6 +14,7 @@
 #include "preproc/void_map.h"
 #include "runtime/base/mutex.h"
 #include "runtime/base/status.h"
+#include "runtime/earth/geoid.h"
 
 #include <atomic>
 #include <cstddef>
@@ -22,6 +23,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -83,10 +85,15 @@ class RasterSource {
 
   // What could not be read, if anything: the source is then to be left out.
   Status failure() const EXCLUDES_LOCK(failure_mutex_);
+  // Elevation: how far above the ellipsoid the source's zero lies, where mean sea level by EGM96 is as far above it as
+  // `undulation_m` says: every latitude with every longitude, row by row. NaN where its datum has no value.
+  std::vector<double> DatumHeights(std::span<const double> latitudes_deg, std::span<const double> longitudes_deg,
+                                   const std::vector<double>& undulation_m) const;
+
   // Elevation: the step between two heights, where pixels are integers; 0 where they are not.
   double precision_m() const;
   // What was done to the pixels that the user may not expect; may be empty.
-  const std::string& remark() const;
+  const std::string& remark() const { return remark_; }
   // Of its files when it was opened (source_settings.h), and where its pixels lie: the same where nothing has changed.
   const std::string& state() const { return state_; }
   // Whether any pixel is valid; reads the whole source.
@@ -108,6 +115,7 @@ class RasterSource {
   std::shared_ptr<const Block> ReadFromFile(int column, int row);
   std::shared_ptr<const Block> Shrink(Plane plane, int pyramid_level, int column, int row);
   std::shared_ptr<const Block> DomainOf(int column, int row);
+  Status FindDatum();
   const VoidMap& Voids();
   VoidMap FindVoids();
   void Fail(Status status) EXCLUDES_LOCK(failure_mutex_);
@@ -121,6 +129,10 @@ class RasterSource {
   int width_ = 0, height_ = 0;
   int pyramid_levels_ = 0;
   std::optional<ColourFit> colour_fit_;
+  VerticalDatum datum_ = VerticalDatum::kEgm96;  // never kDeclared
+  std::shared_ptr<const Geoid> datum_grid_;      // for kGrid
+  std::string datum_name_;
+  std::string remark_;
   int voids_level_ = 0;  // of the pyramid, that voids_ is of
   std::once_flag voids_found_;
   VoidMap voids_;  // once they are found

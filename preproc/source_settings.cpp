@@ -1,5 +1,8 @@
 #include "preproc/source_settings.h"
 
+#include "preproc/mosaic.h"
+#include "runtime/paging/page_codec.h"
+
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
@@ -15,9 +18,17 @@ using nlohmann::json;
 // Names of GDAL's own, as "/vsizip/a.zip", are absolute; others may mean a file or not ("WMTS:https://...").
 std::string AbsolutePath(const std::string& path) {
   std::error_code error;
-  if (!std::filesystem::exists(path, error)) return path;
+  if (!std::filesystem::exists(path, error) && !IsPattern(path)) return path;
   const auto absolute = std::filesystem::weakly_canonical(path, error);
   return error ? path : absolute.string();
+}
+
+std::array<double, 4> Edges(const GeoBox& box) {
+  return {box.west_deg, box.south_deg, box.east_deg, box.north_deg};
+}
+GeoBox BoxOf(const json& edges) {
+  const auto numbers = edges.get<std::array<double, 4>>();
+  return {numbers[0], numbers[1], numbers[2], numbers[3]};
 }
 
 template <typename Value>
@@ -32,19 +43,22 @@ void GetIf(const json& in, const char* key, std::optional<Value>& value) {
 }  // namespace
 
 std::string SettingsToJson(const SourceSpec& source) {
-  // All members by name: who adds one is told here that datasets must keep it.
-  const auto& [path, written_path, nodata, crs, box, geotransform, metres_per_unit, datum, datum_m, feather_m, utc_s,
-               match_colour] = source;
+  // All members by name: who adds one is told here that datasets must keep it. Files are found anew.
+  const auto& [path, written_path, files, tiles, extent, nodata, crs, box, geotransform, metres_per_unit, datum,
+               datum_m, datum_grid, feather_m, utc_s, match_colour] = source;
   json out = {{"file", AbsolutePath(path)}, {"path", written_path}, {"datum", static_cast<int>(datum)}};
   PutIf(out, "nodata", nodata);
   PutIf(out, "crs", crs);
-  if (box) out["box"] = {box->west_deg, box->south_deg, box->east_deg, box->north_deg};
+  if (extent) out["extent"] = Edges(*extent);
+  if (box) out["box"] = Edges(*box);
   PutIf(out, "geotransform", geotransform);
   PutIf(out, "metres_per_unit", metres_per_unit);
   if (datum_m != 0) out["datum_m"] = datum_m;
+  if (!datum_grid.empty()) out["datum_grid"] = AbsolutePath(datum_grid);
   if (feather_m != 0) out["feather_m"] = feather_m;
   PutIf(out, "utc_s", utc_s);
   if (match_colour) out["match_colour"] = true;
+  if (!tiles.empty()) out["tiles"] = tiles;
   return out.dump();
 }
 
@@ -57,16 +71,16 @@ Result<SourceSpec> SettingsFromJson(std::string_view text) {
     source.datum = static_cast<VerticalDatum>(in.at("datum").get<int>());
     GetIf(in, "nodata", source.nodata);
     GetIf(in, "crs", source.crs);
-    if (in.contains("box")) {
-      const auto edges = in.at("box").get<std::array<double, 4>>();
-      source.box = GeoBox{edges[0], edges[1], edges[2], edges[3]};
-    }
+    if (in.contains("extent")) source.extent = BoxOf(in.at("extent"));
+    if (in.contains("box")) source.box = BoxOf(in.at("box"));
     GetIf(in, "geotransform", source.geotransform);
     GetIf(in, "metres_per_unit", source.metres_per_unit);
     source.datum_m = in.value("datum_m", 0.0);
+    source.datum_grid = in.value("datum_grid", "");
     source.feather_m = in.value("feather_m", 0.0);
     GetIf(in, "utc_s", source.utc_s);
     source.match_colour = in.value("match_colour", false);
+    source.tiles = in.value("tiles", "");
     return source;
   } catch (const std::exception& problem) {
     return Status::Error("a source's settings are damaged ({})", problem.what());
@@ -74,6 +88,7 @@ Result<SourceSpec> SettingsFromJson(std::string_view text) {
 }
 
 std::string StateOfFiles(const std::vector<std::string>& paths) {
+  constexpr size_t kMostListed = 64;
   std::string state;
   for (const std::string& path : paths) {
     const std::string name = std::filesystem::path(path).filename().string();
@@ -87,7 +102,10 @@ std::string StateOfFiles(const std::vector<std::string>& paths) {
       state += fmt::format("{} is not there\n", name);
     }
   }
-  return state;
+  if (paths.size() <= kMostListed) return state;
+  const auto* bytes = reinterpret_cast<const uint8_t*>(state.data());
+  return fmt::format("{} files, {} bytes of names, sizes and times, CRC-32C {:08x}\n", paths.size(), state.size(),
+                     Crc32c({bytes, state.size()}));
 }
 
 }  // namespace belvedere

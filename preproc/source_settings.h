@@ -18,7 +18,8 @@ std::string SettingsToJson(const SourceSpec& source);
 // The reason alone where the text is none of SettingsToJson.
 Result<SourceSpec> SettingsFromJson(std::string_view text);
 
-// Names without their folders, sizes and times of last change: the same where no file was written to.
+// Names without their folders, sizes and times of last change, or of many files a checksum of that: the same where no
+// file was written to.
 std::string StateOfFiles(const std::vector<std::string>& paths);
 
 }  // namespace belvedere

@@ -104,6 +104,18 @@ class Parser {
     return node.value<double>().value_or(0);
   }
 
+  // None where it is no array.
+  Result<std::vector<double>> Numbers(const toml::node& node, std::string_view key) const {
+    std::vector<double> numbers;
+    const toml::array* array = node.as_array();
+    for (size_t i = 0; array != nullptr && i < array->size(); ++i) {
+      const auto number = Number((*array)[i], key);
+      if (!number.ok()) return number.status();
+      numbers.push_back(*number);
+    }
+    return numbers;
+  }
+
   // A layer, or all its steps.
   Result<std::vector<LayerSpec>> ParseLayer(const toml::node& node) const {
     const toml::table* table = node.as_table();
@@ -169,7 +181,7 @@ class Parser {
   Result<SourceSpec> ParseSource(const toml::node& node, LayerKind kind) const {
     const toml::table* table = node.as_table();
     if (table == nullptr) return Error(node, "\"source\" must be a table: write [[layer.source]]");
-    if (Status status = CheckKeys(*table, {"path", "zoom", "nodata", "crs", "georeference", "unit", "datum",
+    if (Status status = CheckKeys(*table, {"path", "zoom", "extent", "nodata", "crs", "georeference", "unit", "datum",
                                            "feather_m", "time", "match_colour"});
         !status.ok()) {
       return status;
@@ -181,6 +193,7 @@ class Parser {
     const auto zoom = ParseZoom(*table, source.written_path);
     if (!zoom.ok()) return zoom.status();
     source.path = ResolveSourcePath(source.written_path, std::filesystem::path(path_).parent_path().string(), *zoom);
+    if (Status status = ParseExtent(*table, source); !status.ok()) return status;
     if (const toml::node* nodata = table->get("nodata")) {
       const auto value = Number(*nodata, "nodata");
       if (!value.ok()) return value.status();
@@ -217,6 +230,23 @@ class Parser {
                  "tiles need a \"zoom\", the level that is read: a whole number from 0 to {}", kFinestZoom);
   }
 
+  Status ParseExtent(const toml::table& table, SourceSpec& source) const {
+    const toml::node* node = table.get("extent");
+    if (node == nullptr) return {};
+    if (!IsTileTemplate(source.written_path))
+      return Error(*node, "\"extent\" is of tiles alone: a path with {{z}}, {{x}} and {{y}}");
+    const auto numbers = Numbers(*node, "extent");
+    if (!numbers.ok()) return numbers.status();
+    if (numbers->size() != 4) return Error(*node, "\"extent\" must be [west, south, east, north] in degrees");
+    source.extent = GeoBox{(*numbers)[0], (*numbers)[1], (*numbers)[2], (*numbers)[3]};
+    const GeoBox& box = *source.extent;
+    if (!(box.west_deg >= -180 && box.west_deg < box.east_deg && box.east_deg <= 180 && box.south_deg >= -90 &&
+          box.south_deg < box.north_deg && box.north_deg <= 90)) {
+      return Error(*node, "\"extent\" needs west < east, from -180 to 180, and south < north, from -90 to 90");
+    }
+    return {};
+  }
+
   Status ParseMatchColour(const toml::table& table, LayerKind kind, SourceSpec& source) const {
     const toml::node* node = table.get("match_colour");
     if (node == nullptr) return {};
@@ -244,18 +274,15 @@ class Parser {
   Status ParseGeoreference(const toml::table& table, SourceSpec& source) const {
     const toml::node* node = table.get("georeference");
     if (node == nullptr) return {};
-    const toml::array* array = node->as_array();
-    if (array == nullptr || (array->size() != 4 && array->size() != 6)) {
+    const auto found = Numbers(*node, "georeference");
+    if (!found.ok()) return found.status();
+    if (found->size() != 4 && found->size() != 6) {
       return Error(*node,
                    "\"georeference\" must be [west, south, east, north] in degrees or a geotransform of 6 numbers");
     }
     std::array<double, 6> numbers{};
-    for (size_t i = 0; i < array->size(); ++i) {
-      const auto number = Number((*array)[i], "georeference");
-      if (!number.ok()) return number.status();
-      numbers[i] = *number;
-    }
-    if (array->size() == 6) {
+    std::copy(found->begin(), found->end(), numbers.begin());
+    if (found->size() == 6) {
       source.geotransform = numbers;
       return {};
     }
@@ -291,10 +318,21 @@ class Parser {
       return {};
     }
     const auto name = datum->value_exact<std::string>();
-    if (!name || (*name != "egm96" && *name != "ellipsoid")) {
-      return Error(*datum, "\"datum\" must be \"egm96\", \"ellipsoid\" or a number of metres above the ellipsoid");
+    if (name && (*name == "egm96" || *name == "ellipsoid")) {
+      source.datum = *name == "egm96" ? VerticalDatum::kEgm96 : VerticalDatum::kEllipsoid;
+      return {};
     }
-    source.datum = *name == "egm96" ? VerticalDatum::kEgm96 : VerticalDatum::kEllipsoid;
+    source.datum = VerticalDatum::kGrid;
+    if (name && name->starts_with("EPSG:")) {
+      source.datum_grid = *name;
+      return {};
+    }
+    if (!name || name->find('.') == std::string::npos) {
+      return Error(*datum,
+                   "\"datum\" must be \"egm96\", \"ellipsoid\", a number of metres above the ellipsoid, a vertical CRS "
+                   "like \"EPSG:3855\" or the file of a geoid grid");
+    }
+    source.datum_grid = (std::filesystem::path(path_).parent_path() / *name).string();
     return {};
   }
 
@@ -302,6 +340,10 @@ class Parser {
 };
 
 }  // namespace
+
+std::string NameOf(const SourceSpec& source) {
+  return source.tiles.empty() ? source.written_path : source.written_path + " (" + source.tiles + ")";
+}
 
 std::vector<LayerSpec> StepsOf(LayerSpec layer, Repeats repeats) {
   std::set<double> times;

@@ -22,23 +22,32 @@
 
 namespace belvedere {
 
-enum class VerticalDatum { kEgm96, kEllipsoid, kOffset };
+// kDeclared: what the file's CRS says, else EGM96 (vertical_datum.h). Numbers are those that datasets keep.
+enum class VerticalDatum { kEgm96, kEllipsoid, kOffset, kGrid, kDeclared };
 
 struct SourceSpec {
   std::string path;          // to open: relative paths are taken from the spec's folder
   std::string written_path;  // as it stands in the spec
+  // Where the path names many files (mosaic.h): which this source is of, and what they have in common if it is not all.
+  std::vector<std::string> files;
+  std::string tiles;
+  std::optional<GeoBox> extent;  // of tiles on a server: what of them is read
   std::optional<double> nodata;
   std::optional<std::string> crs;  // anything that GDAL takes: "EPSG:27700", WKT, a PROJ string
   // At most one of these: the outer edges west, south, east, north; or a GDAL geotransform.
   std::optional<GeoBox> box;
   std::optional<std::array<double, 6>> geotransform;
   std::optional<double> metres_per_unit;  // elevation; without it the file's own unit, or metres
-  VerticalDatum datum = VerticalDatum::kEgm96;
-  double datum_m = 0;  // for kOffset: height of the source's zero above the ellipsoid
+  VerticalDatum datum = VerticalDatum::kDeclared;
+  double datum_m = 0;      // for kOffset: height of the source's zero above the ellipsoid
+  std::string datum_grid;  // for kGrid: "EPSG:n", or the file
   double feather_m = 0;
   std::optional<double> utc_s;  // imagery: when it was so; to the second
   bool match_colour = false;    // imagery: its colours are fitted to those of what lies below it
 };
+
+// For people: the path as written, and which of its files.
+std::string NameOf(const SourceSpec& source);
 
 // Which of a layer's sources wins.
 enum class Priority { kOrder, kResolution };

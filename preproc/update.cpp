@@ -3,6 +3,7 @@
 #include "preproc/changed_extents.h"
 #include "preproc/dataset_spec.h"
 #include "preproc/layer_builder.h"
+#include "preproc/mosaic.h"
 #include "preproc/open_layer.h"
 #include "preproc/page_sink.h"
 #include "runtime/base/iso_time.h"
@@ -89,6 +90,7 @@ class Updater {
     if (spec.ok()) spec = change(std::move(*spec));
     if (!spec.ok()) return spec.status();
     PrepareGdal(spec->layers);
+    for (const UnusableFile& file : ExpandMosaics(*spec)) Warn(file.path, "skipped: " + file.reason);
     const auto geoid = Geoid::LoadEgm96();
     if (!geoid.ok()) return geoid.status();
     if (Status status = OpenSources(*spec); !status.ok()) return status;
@@ -127,7 +129,8 @@ class Updater {
   }
 
   Status Refusal(const SourceSpec& source, const std::string& reason) const {
-    return Status::Error("{}: {}; the dataset {} is unchanged", source.path, reason, options_.out);
+    return Status::Error("{}: {}; the dataset {} is unchanged", source.tiles.empty() ? source.path : NameOf(source),
+                         reason, options_.out);
   }
 
   // What of the dataset stays, and whether it can.
@@ -183,14 +186,14 @@ class Updater {
       }
     }
     for (const OpenLayer& layer : layers_) {
-      for (const Unmatched& unmatched : layer.unmatched) Warn(unmatched.source->spec().written_path, unmatched.reason);
+      for (const Unmatched& unmatched : layer.unmatched) Warn(NameOf(unmatched.source->spec()), unmatched.reason);
     }
     return written.ok() ? CheckChanged() : written;
   }
 
   Status CheckChanged() {
     for (RasterSource* source : changed_) {
-      const std::string& path = source->spec().written_path;
+      const std::string path = NameOf(source->spec());
       if (!source->used() && !source->HasData())
         return Refusal(source->spec(), "it covers nothing: no pixel is valid; check its nodata and mask");
       if (!source->remark().empty()) Warn(path, source->remark());

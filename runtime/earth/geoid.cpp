@@ -7,13 +7,17 @@
 #include <cstdint>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <sstream>
+#include <utility>
 
 namespace belvedere {
 namespace {
 
 constexpr int kLongestSide = 100000;
 constexpr float kNodata = -88.8888f;
+constexpr double kBeyond = 1e-6;  // of a step, that rounding may lead over the border
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 uint32_t BigEndian32(const char* bytes) {
   uint32_t value = 0;
@@ -41,30 +45,35 @@ Result<std::shared_ptr<const Geoid>> Geoid::Load(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::array<char, 40> header{};
   if (!file.read(header.data(), header.size())) return Status::Error("{}: cannot read the geoid grid", path);
-  auto geoid = std::make_shared<Geoid>();
-  geoid->path_ = path;
-  geoid->south_deg_ = BigEndianDouble(&header[0]);
-  geoid->west_deg_ = BigEndianDouble(&header[8]);
-  geoid->latitude_step_deg_ = BigEndianDouble(&header[16]);
-  geoid->longitude_step_deg_ = BigEndianDouble(&header[24]);
-  geoid->rows_ = static_cast<int>(BigEndian32(&header[32]));
-  geoid->columns_ = static_cast<int>(BigEndian32(&header[36]));
+  GeoidGrid grid;
+  grid.path = path;
+  grid.south_deg = BigEndianDouble(&header[0]);
+  grid.west_deg = BigEndianDouble(&header[8]);
+  grid.latitude_step_deg = BigEndianDouble(&header[16]);
+  grid.longitude_step_deg = BigEndianDouble(&header[24]);
+  grid.rows = static_cast<int>(BigEndian32(&header[32]));
+  grid.columns = static_cast<int>(BigEndian32(&header[36]));
   const auto sane = [](int side) { return side >= 2 && side <= kLongestSide; };
-  if (!sane(geoid->rows_) || !sane(geoid->columns_) || !(geoid->latitude_step_deg_ > 0) ||
-      !(geoid->longitude_step_deg_ > 0)) {
+  if (!sane(grid.rows) || !sane(grid.columns) || !(grid.latitude_step_deg > 0) || !(grid.longitude_step_deg > 0)) {
     return Status::Error("{}: not a .gtx geoid grid", path);
   }
-  const size_t count = static_cast<size_t>(geoid->rows_) * static_cast<size_t>(geoid->columns_);
+  const size_t count = static_cast<size_t>(grid.rows) * static_cast<size_t>(grid.columns);
   std::vector<char> bytes(4 * count);
   if (!file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()))) {
     return Status::Error("{}: the geoid grid is cut short", path);
   }
-  geoid->heights_m_.resize(count);
+  grid.heights_m.resize(count);
   for (size_t i = 0; i < count; ++i) {
     const float height_m = std::bit_cast<float>(BigEndian32(&bytes[4 * i]));
-    geoid->heights_m_[i] = height_m == kNodata || !std::isfinite(height_m) ? 0.0f : height_m;
+    grid.heights_m[i] = height_m == kNodata || !std::isfinite(height_m) ? 0.0f : height_m;
   }
-  return std::shared_ptr<const Geoid>(std::move(geoid));
+  return Of(std::move(grid));
+}
+
+std::shared_ptr<const Geoid> Geoid::Of(GeoidGrid grid) {
+  auto geoid = std::make_shared<Geoid>();
+  geoid->grid_ = std::move(grid);
+  return geoid;
 }
 
 Result<std::shared_ptr<const Geoid>> Geoid::LoadEgm96() {
@@ -76,23 +85,35 @@ Result<std::shared_ptr<const Geoid>> Geoid::LoadEgm96() {
 }
 
 Geoid::Place Geoid::PlaceOfLatitude(double latitude_deg) const {
-  const double y = std::clamp((latitude_deg - south_deg_) / latitude_step_deg_, 0.0, static_cast<double>(rows_ - 1));
-  const int row = std::min(static_cast<int>(y), rows_ - 2);
-  return {static_cast<size_t>(row), static_cast<size_t>(row) + 1, y - row};
+  const double last = grid_.rows - 1;
+  const double rows = (latitude_deg - grid_.south_deg) / grid_.latitude_step_deg;
+  const double y = std::clamp(rows, 0.0, last);
+  const int row = std::min(static_cast<int>(y), grid_.rows - 2);
+  const bool is_beyond = !grid_.is_round && std::abs(rows - y) > kBeyond;
+  return {static_cast<size_t>(row), static_cast<size_t>(row) + 1, is_beyond ? kNone : y - row};
 }
 
 Geoid::Place Geoid::PlaceOfLongitude(double longitude_deg) const {
-  double turns = (longitude_deg - west_deg_) / 360.0;
+  double turns = (longitude_deg - grid_.west_deg) / 360.0;
   turns -= std::floor(turns);
-  const double x = turns * 360.0 / longitude_step_deg_;
-  const int column = std::min(static_cast<int>(x), columns_ - 1);
-  const int next = column + 1 < columns_ ? column + 1 : 0;  // a global grid closes on itself
+  double x = turns * 360.0 / grid_.longitude_step_deg;
+  if (!grid_.is_round) {
+    const double last = grid_.columns - 1;
+    const double round = 360.0 / grid_.longitude_step_deg;
+    if (x > round - kBeyond) x = 0;
+    if (x > last + kBeyond) return {0, 0, kNone};
+    x = std::min(x, last);
+    const int column = std::min(static_cast<int>(x), grid_.columns - 2);
+    return {static_cast<size_t>(column), static_cast<size_t>(column) + 1, x - column};
+  }
+  const int column = std::min(static_cast<int>(x), grid_.columns - 1);
+  const int next = column + 1 < grid_.columns ? column + 1 : 0;
   return {static_cast<size_t>(column), static_cast<size_t>(next), x - column};
 }
 
 double Geoid::Interpolate(const Place& row, const Place& column) const {
-  const float* south = &heights_m_[row.first * static_cast<size_t>(columns_)];
-  const float* north = &heights_m_[row.second * static_cast<size_t>(columns_)];
+  const float* south = &grid_.heights_m[row.first * static_cast<size_t>(grid_.columns)];
+  const float* north = &grid_.heights_m[row.second * static_cast<size_t>(grid_.columns)];
   const auto along = [&column](const float* line) {
     return static_cast<double>(line[column.first]) * (1 - column.fraction) +
            static_cast<double>(line[column.second]) * column.fraction;

@@ -160,10 +160,14 @@ TEST(Resume, ABuildThatHadStartedOverWithoutASourceGoesOn) {
   const std::string spec = Layer("elevation", {"path = \"heights.tif\"", "path = \"cut.tif\""}) +
                            Layer("imagery", {"path = \"colours.tif\""});
   ASSERT_TRUE(Succeeds([&] { return BuildIn(folder, spec, "whole").ok(); }));
+  // Once more is written than was there with the note, which then is sure to count.
+  uintmax_t noted_bytes = 0;
   const auto started_over = [&] {
+    if (noted_bytes > 0) return PartialBytes(folder) > noted_bytes;
     std::ifstream file(folder + "/out.partial/data.mdb", std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(file)), {});
-    return bytes.find("\"skipped\":{\"elevation") != std::string::npos;
+    if (bytes.find("\"skipped\":{\"elevation") != std::string::npos) noted_bytes = PartialBytes(folder);
+    return false;
   };
   ASSERT_TRUE(IsKilledWhen(started_over, [&] { static_cast<void>(BuildIn(folder, spec, "out").ok()); }));
   EXPECT_GT(Resumed(folder, spec), 0);

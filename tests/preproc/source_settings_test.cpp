@@ -23,6 +23,9 @@ TEST(SourceSettings, AllOfASourceIsKept) {
   source.metres_per_unit = 1200.0 / 3937.0;
   source.datum = VerticalDatum::kOffset;
   source.datum_m = -12.5;
+  source.datum_grid = "EPSG:3855";
+  source.extent = GeoBox{1, 2, 3, 4};
+  source.tiles = "EPSG:32632, 900 x 900, Int16";
   source.feather_m = 0.1;
   source.utc_s = 1072915200;
   source.match_colour = true;
@@ -37,6 +40,10 @@ TEST(SourceSettings, AllOfASourceIsKept) {
   EXPECT_EQ(read->metres_per_unit, source.metres_per_unit);
   EXPECT_EQ(read->datum, source.datum);
   EXPECT_EQ(read->datum_m, source.datum_m);
+  EXPECT_EQ(read->datum_grid, source.datum_grid);
+  ASSERT_TRUE(read->extent);
+  EXPECT_EQ(read->extent->north_deg, 4);
+  EXPECT_EQ(read->tiles, source.tiles);
   EXPECT_EQ(read->feather_m, source.feather_m);
   EXPECT_EQ(read->utc_s, source.utc_s);
   EXPECT_TRUE(read->match_colour);
@@ -58,6 +65,10 @@ TEST(SourceSettings, AFileIsOpenedFromWhereverTheProgramRuns) {
   ASSERT_TRUE(read.ok());
   EXPECT_TRUE(std::filesystem::path(read->path).is_absolute()) << read->path;
   EXPECT_TRUE(std::filesystem::exists(read->path));
+  source.path = std::filesystem::relative(folder).string() + "/*.tif";
+  const auto pattern = SettingsFromJson(SettingsToJson(source));
+  ASSERT_TRUE(pattern.ok());
+  EXPECT_TRUE(std::filesystem::path(pattern->path).is_absolute()) << pattern->path;
 }
 
 TEST(SourceSettings, AStateTellsEveryWriteApart) {

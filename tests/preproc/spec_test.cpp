@@ -43,7 +43,7 @@ kind = "imagery"
   const SourceSpec& plain = spec->layers[0].sources[0];
   EXPECT_EQ(plain.path, "dir/a.tif");
   EXPECT_EQ(plain.written_path, "a.tif");
-  EXPECT_EQ(plain.datum, VerticalDatum::kEgm96);
+  EXPECT_EQ(plain.datum, VerticalDatum::kDeclared);
   EXPECT_FALSE(plain.nodata || plain.crs || plain.box || plain.geotransform || plain.metres_per_unit);
   const SourceSpec& full = spec->layers[0].sources[1];
   EXPECT_EQ(full.path, "/abs/b.tif");
@@ -85,6 +85,21 @@ TEST(Spec, PathsMayNameServersAndDrivers) {
   }
 }
 
+TEST(Spec, TilesMayHaveAnExtent) {
+  const std::string head = "[[layer]]\nname = \"i\"\nkind = \"imagery\"\n[[layer.source]]\nzoom = 3\npath = ";
+  const std::string tiles = "\"http://a.org/{z}/{x}/{y}.png\"\nextent = ";
+  const auto spec = ParseSpec(head + tiles + "[5, 40, 10, 50]\n", "dir/earth.toml");
+  ASSERT_TRUE(spec.ok()) << spec.message();
+  EXPECT_EQ(spec->layers[0].sources[0].extent->north_deg, 50);
+  for (const char* wrong : {"[5, 40, 10]", "5", "[5, 40, 200, 50]", "[10, 40, 5, 50]", "[5, \"a\", 10, 50]"}) {
+    const std::string message = Message(head + tiles + wrong + "\n");
+    EXPECT_TRUE(Has(message, "\"extent\"") && Has(message, "dir/earth.toml:")) << wrong << ": " << message;
+  }
+  EXPECT_TRUE(Has(Message("[[layer]]\nname = \"i\"\nkind = \"imagery\"\n[[layer.source]]\npath = \"a.tif\"\n"
+                          "extent = [5, 40, 10, 50]\n"),
+                  "of tiles alone"));
+}
+
 TEST(Spec, AnUnknownKeyNamesFileLineKeyAndTheNearest) {
   const std::string message =
       Message("[[layer]]\nname = \"e\"\nkind = \"elevation\"\n[[layer.source]]\npath = \"a\"\nnodta = 3\n");
@@ -106,6 +121,7 @@ TEST(Spec, AWrongTypeNamesFileLineKeyAndWhatIsWanted) {
                 {"feather_m = -1", "feather_m", "negative"},
                 {"unit = \"yard\"", "unit", "us-ft"},
                 {"datum = \"egm84\"", "datum", "ellipsoid"},
+                {"datum = true", "datum", "EPSG:3855"},
                 {"georeference = [1, 2]", "georeference", "geotransform"},
                 {"georeference = [10, 0, -10, 5]", "georeference", "west < east"},
                 {"georeference = [1, 2, 3, \"4\"]", "georeference", "number"}};

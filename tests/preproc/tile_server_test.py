@@ -156,7 +156,7 @@ class Test:
         return subprocess.run([self.program, spec, "--out", self.folder / "out", "--jobs", "2", "--no-report"],
                               capture_output=True, text=True, check=False, cwd=self.called_from)
 
-    def expect_colours(self, what, path, more="", tolerance=4):
+    def expect_colours(self, what, path, more="", tolerance=4, places=tuple(PLACES)):
         built = self.build(path, more)
         if built.returncode != 0:
             fail(f"{what}: exit code {built.returncode}: {built.stderr}")
@@ -167,11 +167,24 @@ class Test:
                        capture_output=True, check=True)
         raster = gdal.Open(str(exported))
         x0, dx, _, y0, _, dy = raster.GetGeoTransform()
-        for longitude, latitude in PLACES:
+        for longitude, latitude in places:
             found = raster.ReadAsArray(int((longitude - x0) / dx), int((latitude - y0) / dy), 1, 1)[:, 0, 0]
             wanted = [*colours(numpy.array([longitude]), numpy.array([latitude]))[:, 0, 0], 255]
             if any(abs(float(a) - b) > tolerance for a, b in zip(found, wanted)):
                 fail(f"{what}: at {longitude} {latitude} {found.tolist()}, not {wanted}")
+
+    def expect_part(self, server, what, path, more, tiles):
+        """That of the tiles no others are asked for, and that there is nothing beside them."""
+        before = len(server.asked)
+        self.expect_colours(what, path, more, places=[(20.0, 30.0), (60.0, 50.0)])
+        asked = {tuple(url.split("?")[0].split("/")[2:4]) for url in server.asked[before:]}
+        if asked != tiles:
+            fail(f"{what}: tiles asked for {sorted(asked)}, not {sorted(tiles)}")
+        raster = gdal.Open(str(self.folder / "exported.tif"))
+        x0, dx, _, y0, _, dy = raster.GetGeoTransform()
+        column, row = int((-30.0 - x0) / dx), int((30.0 - y0) / dy)
+        if 0 <= column < raster.RasterXSize and 0 <= row < raster.RasterYSize and raster.ReadAsArray(column, row, 1, 1)[3, 0, 0]:
+            fail(f"{what}: something lies beside the extent")
 
     def expect_refused_unasked(self, server, what, path):
         before = len(server.asked)
@@ -206,6 +219,10 @@ def main():
         test.expect_colours("a file on a server", f"{server.base}/earth.tif")
         test.expect_colours("XYZ tiles", server.base + "/xyz/{z}/{x}/{y}.png", "zoom = 2")
         test.expect_colours("TMS tiles", server.base + "/tms/{z}/{x}/{-y}.png?a=1&b=2", "zoom = 2")
+        extent = "zoom = 3\nextent = [1, 1, 89, 66]"  # a quarter of the north, two tiles by two at zoom 3
+        columns = {("3", "4"), ("3", "5")}
+        test.expect_part(server, "a part of XYZ tiles", server.base + "/xyz/{z}/{x}/{y}.png", extent, columns)
+        test.expect_part(server, "a part of TMS tiles", server.base + "/tms/{z}/{x}/{-y}.png", extent, columns)
         test.expect_colours("WMTS", f"WMTS:{server.base}/wmts.xml,layer=earth")
         wms_source = (f'<GDAL_WMS><Service name="WMS"><Version>1.1.1</Version><ServerUrl>{server.base}/wms?</ServerUrl>'
                       "<SRS>EPSG:4326</SRS><ImageFormat>image/png</ImageFormat><Layers>earth</Layers></Service><DataWindow>"
