@@ -141,4 +141,24 @@ TEST(Layout, FilesStayShortAndAreNamedForWhatTheyHold) {
   }
 }
 
+// They are left out where threads are checked.
+TEST(Layout, TestsThatAreSaidToBePureHaveNoThreads) {
+  int pure = 0;
+  for (const fs::directory_entry& folder : fs::directory_iterator(kRoot / "tests")) {
+    std::ifstream lists(folder.path() / "CMakeLists.txt");
+    for (std::string line; std::getline(lists, line);) {
+      const size_t sources = line.find(" SOURCES ");
+      if (line.find(" PURE ") == std::string::npos || sources == std::string::npos) continue;
+      ++pure;
+      const fs::path source = folder.path() / line.substr(sources + 9, line.find(')') - sources - 9);
+      std::ifstream file(source);
+      const std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+      ASSERT_FALSE(text.empty()) << source;
+      for (const char* threads : {"<thread>", "<mutex>", "<atomic>", "base/mutex.h", "paced_thread.h", "jobs = "})
+        EXPECT_EQ(text.find(threads), std::string::npos) << source << " has " << threads;
+    }
+  }
+  EXPECT_GT(pure, 20);  // the reader of lists works
+}
+
 }  // namespace
