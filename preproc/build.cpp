@@ -5,6 +5,7 @@
 #include "preproc/mosaic.h"
 #include "preproc/resumed_pages.h"
 #include "preproc/source_settings.h"
+#include "preproc/types/derived_layers.h"
 #include "runtime/base/iso_time.h"
 #include "runtime/base/log.h"
 #include "runtime/earth/geoid.h"
@@ -64,6 +65,7 @@ class Builder {
       report_.opening_s += opened_s - round_s;
       report_.pages_s += made_s - opened_s;
       if (excluded_.size() > left_out) continue;
+      if (Status status = MakeDerived(**geoid, **writer); !status.ok()) return status;
       if (Status status = Finish(**geoid, **writer); !status.ok()) return status;
       report_.finishing_s = clock_.NowSeconds() - made_s;
       report_.seconds = clock_.NowSeconds() - start_s;
@@ -91,6 +93,7 @@ class Builder {
     for (const LayerSpec& layer : spec_.layers) {
       text += fmt::format("{} {} {}\n", LayerKindName(layer.kind), layer.name, static_cast<int>(layer.priority));
       for (const SourceSpec& source : layer.sources) text += SettingsToJson(source) + "\n";
+      if (layer.derived) text += layer.derived->of + TypeToJson(layer.derived->type) + "\n";
     }
     for (const OpenLayer& layer : layers_) {
       text += layer.spec.name + "\n";
@@ -151,16 +154,50 @@ class Builder {
         layer.Add(std::move(*source));
       }
       layer.PutInOrder();
-      if (IsWorthBuilding(layer)) layers_.push_back(std::move(layer));
+      if (layer_spec.derived && !FindParent(layer)) continue;
+      if (layer_spec.derived || IsWorthBuilding(layer)) layers_.push_back(std::move(layer));
     }
     if (!layers_.empty()) return {};
     return Status::Error("{}: nothing could be built, since no source could be used; the first was {}: {}", spec_.path,
                          report_.skipped.front().source, report_.skipped.front().reason);
   }
 
+  bool FindParent(OpenLayer& derived) {
+    const DerivedSpec& spec = *derived.spec.derived;
+    for (size_t i = 0; i < layers_.size(); ++i) {
+      if (layers_[i].spec.name == spec.of && TypeOf(layers_[i].spec) == spec.type.parent)
+        derived.parent = static_cast<int>(i);
+    }
+    if (derived.parent >= 0) return true;
+    const std::string reason =
+        fmt::format("there is no layer {} of type \"{}\" that it could be made of", spec.of, spec.type.parent);
+    if (!excluded_.insert({"layer " + derived.spec.name, reason}).second) return false;
+    report_.skipped.push_back({derived.spec.name, reason});
+    LogWarning("layer {}: skipped: {}", derived.spec.name, reason);
+    return false;
+  }
+
+  // Of the last round alone, which has all that they are made of.
+  Status MakeDerived(const Geoid& geoid, DatasetWriter& writer) {
+    for (size_t i = 0; i < layers_.size(); ++i) {
+      const OpenLayer& layer = layers_[i];
+      if (!layer.spec.derived) continue;
+      const int number = static_cast<int>(i);
+      const std::vector<uint64_t> known = writer.Resumed(number);
+      const DerivedWork work{
+          number, jobs_, options_.batch_bytes, [&](Quadcode node) { return writer.Get(layer.parent, node); },
+          [&known](Quadcode node) { return std::binary_search(known.begin(), known.end(), node.word()); }};
+      LogInfo("layer {} is made of layer {}", layer.spec.name, layer.spec.derived->of);
+      const LayerKind parent = layers_[static_cast<size_t>(layer.parent)].spec.kind;
+      if (Status status = MakeDerivedLayer(*layer.spec.derived, work, parent, {geoid}, writer); !status.ok())
+        return status;
+    }
+    return {};
+  }
+
   Status MakePages(const Geoid& geoid, DatasetWriter& writer) {
     int64_t planned = 0;
-    for (const OpenLayer& layer : layers_) planned += CountNodes(layer.plan);
+    for (const OpenLayer& layer : layers_) planned += layer.spec.derived ? 0 : CountNodes(layer.plan);
     ResumedPages resumed(writer, static_cast<int>(layers_.size()));
     report_.resumed = resumed.pages();
     if (report_.resumed > 0)
@@ -171,6 +208,7 @@ class Builder {
       progress.emplace(planned, clock_, [&sink] { return Progress::Written{sink.pages(), sink.bytes()}; });
     std::vector<std::unique_ptr<LayerBuilder>> builders;
     for (size_t i = 0; i < layers_.size(); ++i) {
+      if (layers_[i].spec.derived) continue;
       builders.push_back(std::make_unique<LayerBuilder>(static_cast<int>(i), layers_[i], geoid, sink, &resumed,
                                                         progress ? &*progress : nullptr));
     }

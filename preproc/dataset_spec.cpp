@@ -36,6 +36,9 @@ Status AddLayer(BuildSpec& spec, const LayerSpec& added, size_t layers_before) {
     LayerSpec& layer = spec.layers[i];
     if (WholeName(layer) != WholeName(added)) continue;
     if (layer.kind != added.kind) return Status::Error("layer {} is of another kind", layer.name);
+    if (layer.derived || added.derived)
+      return Status::Error("layer {} is there already, made of layer {}", layer.name,
+                           (layer.derived ? layer : added).derived->of);
     if (added.priority == Priority::kResolution && layer.priority != added.priority)
       return Status::Error("layer {}: its sources are in the order of its spec; build the dataset again", layer.name);
     const bool same_step = layer.step && added.step && layer.step->utc_s == added.step->utc_s;
@@ -46,6 +49,14 @@ Status AddLayer(BuildSpec& spec, const LayerSpec& added, size_t layers_before) {
     }
   }
   if (known) return {};
+  if (added.derived) {
+    const bool has_parent = std::any_of(spec.layers.begin(), spec.layers.end(), [&](const LayerSpec& layer) {
+      return layer.name == added.derived->of && TypeOf(layer) == added.derived->type.parent;
+    });
+    if (!has_parent)
+      return Status::Error("layer {}: there is no layer {} of type \"{}\" that it could be made of", added.name,
+                           added.derived->of, added.derived->type.parent);
+  }
   const bool has_other_steps =
       std::any_of(spec.layers.begin(), spec.layers.begin() + static_cast<ptrdiff_t>(layers_before),
                   [&](const LayerSpec& layer) { return WholeName(layer) == WholeName(added); });
@@ -71,7 +82,12 @@ Result<BuildSpec> SpecOf(const Dataset& dataset) {
           dataset.path(), record.name);
     }
     LayerSpec layer{
-        record.name, record.kind, {}, record.step, record.finest_last ? Priority::kResolution : Priority::kOrder};
+        record.name, record.kind, {}, record.step, record.finest_last ? Priority::kResolution : Priority::kOrder, {}};
+    if (record.derivation) {
+      auto type = TypeFromJson(record.derivation->definition);
+      if (!type.ok()) return Status::Error("{}: layer {}: {}", dataset.path(), record.name, type.message());
+      layer.derived = {std::move(*type), record.derivation->of};
+    }
     for (const SourceRecord& source : record.sources) {
       auto settings = SettingsFromJson(source.settings);
       if (!settings.ok()) return Status::Error("{}: source {}: {}", dataset.path(), source.path, settings.message());
@@ -101,6 +117,7 @@ Result<BuildSpec> WithRemoved(BuildSpec spec, const std::string& source, const s
     found |= std::erase_if(from.sources, [&](const SourceSpec& other) {
                return other.written_path == source || other.path == source || other.path == opened;
              }) > 0;
+    if (from.derived) continue;
     const bool has_own = std::any_of(from.sources.begin(), from.sources.end(),
                                      [&](const SourceSpec& other) { return !from.step || other.utc_s; });
     if (!has_own) {

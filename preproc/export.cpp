@@ -172,6 +172,9 @@ Result<ExportReport> Export(const Dataset& dataset, const ExportOptions& options
   if (!format.ok()) return format.status();
   const auto layer = LayerOf(dataset, options.layer);
   if (!layer.ok()) return layer.status();
+  if (dataset.layers()[static_cast<size_t>(*layer)].kind == LayerKind::kProperty)
+    return Status::Error("{}: layer {} is a surface property; elevation and imagery can be exported", dataset.path(),
+                         options.layer);
   const auto grid = PlanFor(dataset, *layer, *format, options);
   if (!grid.ok()) return Status::Error("{}: {}", options.out, grid.message());
   LayerRaster raster(dataset, *layer, *grid, options.enlarge);

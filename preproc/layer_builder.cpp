@@ -113,10 +113,14 @@ int WorkersOf(int jobs) {
   return jobs > 0 ? jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
-void BuildAllTrees(std::span<const std::unique_ptr<LayerBuilder>> builders, int jobs) {
+void OnWorkers(int jobs, const std::function<void()>& work) {
   const tbb::global_control workers(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(jobs));
   tbb::task_arena arena(jobs);
-  arena.execute([&] {
+  arena.execute(work);
+}
+
+void BuildAllTrees(std::span<const std::unique_ptr<LayerBuilder>> builders, int jobs) {
+  OnWorkers(jobs, [&] {
     tbb::task_group trees;
     for (const auto& builder : builders) {
       for (int tree = 0; tree < kTrees; ++tree) {

@@ -15,6 +15,7 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <functional>
 #include <memory>
 #include <span>
 
@@ -49,7 +50,9 @@ class LayerBuilder {
 
 // As many as the machine has cores where 0 are asked for.
 int WorkersOf(int jobs);
-// All pages of all layers, by so many workers.
+// Runs work on so many workers of oneTBB's.
+void OnWorkers(int jobs, const std::function<void()>& work);
+// All pages of all layers that are made of sources, by so many workers.
 void BuildAllTrees(std::span<const std::unique_ptr<LayerBuilder>> builders, int jobs);
 
 }  // namespace belvedere

@@ -42,7 +42,7 @@ std::vector<SourceRecord> SourcesOf(const Dataset& dataset, const WholeLayer& wh
 }
 
 double SpacingAt(int level, LayerKind kind) {
-  return std::ldexp(kTreeDegrees / (kind == LayerKind::kElevation ? kCells : kImageInner), -level);
+  return std::ldexp(kTreeDegrees / (kind == LayerKind::kImagery ? kImageInner : kCells), -level);
 }
 
 std::string SourceTable(const std::vector<SourceRecord>& sources, LayerKind kind) {
@@ -86,7 +86,7 @@ std::vector<LevelCount> CountLevels(const Dataset& dataset, const WholeLayer& wh
 }
 
 std::string LevelTable(const std::vector<LevelCount>& levels, const WholeLayer& whole) {
-  const bool posts = whole.kind == LayerKind::kElevation;
+  const bool posts = whole.kind != LayerKind::kImagery;
   std::string out = "<h3>Levels</h3><table>" +
                     Head(std::array<std::string_view, 6>{"level", posts ? "between posts" : "between texels", "covers",
                                                          "pages", "bytes", ""}) +
@@ -157,6 +157,20 @@ Result<std::string> Heights(const Dataset& dataset, const WholeLayer& whole) {
                    Count(histogram->pages_read), Count(histogram->pages));
 }
 
+std::string Legend(const PropertyRecord& property) {
+  if (property.classes.empty()) {
+    return fmt::format("<p>Each byte is {:.6g} + {:.6g} times it, {}.</p>", property.offset, property.gain,
+                       property.unit.empty() ? "without a unit" : Escape(property.unit));
+  }
+  std::string out = "<h3>Classes</h3><table>" + Head(std::array<std::string_view, 2>{"byte", "class"}) + "<tbody>";
+  for (size_t i = 0; i < property.classes.size(); ++i) {
+    const auto& [name, colour] = property.classes[i];
+    out += fmt::format("<tr><td><span class=\"swatch\" style=\"background:{}\"></span>{}</td><td>{}</td></tr>",
+                       Css({colour[0], colour[1], colour[2]}), i, Escape(name));
+  }
+  return out + "</tbody></table>";
+}
+
 }  // namespace
 
 std::vector<WholeLayer> WholeLayers(const Dataset& dataset) {
@@ -183,6 +197,11 @@ Result<std::string> LayerSection(const Dataset& dataset, const WholeLayer& whole
       fmt::format("<h2>{}</h2><p>{}{}: {} pages, {}, levels 0 to {}</p>", Escape(whole.name), LayerKindName(whole.kind),
                   whole.numbers.size() > 1 ? fmt::format(", {} times", whole.numbers.size()) : "", Count(pages),
                   Bytes(bytes), levels.size() - 1);
+  const LayerRecord& record = dataset.layers()[static_cast<size_t>(whole.numbers.front())];
+  if (record.derivation)
+    out += fmt::format("<p>Made of layer {}; its type is \"{}\".</p>", Escape(record.derivation->of),
+                       Escape(record.derivation->type));
+  if (whole.kind == LayerKind::kProperty) return out + Legend(*record.property) + LevelTable(levels, whole);
   const auto pictures = Pictures(dataset, whole, geoid);
   if (!pictures.ok()) return pictures;
   out += *pictures;

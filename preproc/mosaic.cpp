@@ -167,6 +167,7 @@ std::vector<std::string> LabelsOf(const std::vector<Group>& groups, const std::s
 // As GDAL takes them; they live as long as the arguments.
 std::vector<char*> PointersTo(std::vector<std::string>& arguments) {
   std::vector<char*> pointers;
+  pointers.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
   return pointers;
@@ -186,6 +187,7 @@ Result<std::string> VirtualRaster(const SourceSpec& source) {
   }
   std::vector<char*> pointers = PointersTo(arguments);
   std::vector<const char*> names;
+  names.reserve(source.files.size() + 1);
   for (const std::string& file : source.files) names.push_back(file.c_str());
   names.push_back(nullptr);
   CPLErrorReset();

@@ -46,6 +46,8 @@ LayerRecord OpenLayer::Record(const Geoid& geoid) const {
   record.step = spec.step;
   record.rules = kBuilderRules;
   record.finest_last = spec.priority == Priority::kResolution;
+  if (spec.derived) record.derivation = {spec.derived->type.name, spec.derived->of, TypeToJson(spec.derived->type)};
+  if (spec.kind == LayerKind::kProperty) record.property = spec.derived->type.property;
   if (spec.kind == LayerKind::kElevation)
     record.vertical_reference = "WGS 84 ellipsoid; mean sea level lifted by " + geoid.path();
   for (size_t i = 0; i < sources.size(); ++i) {

@@ -24,6 +24,7 @@ struct OpenLayer {
   std::vector<std::unique_ptr<RasterSource>> sources;
   std::vector<PlannedSource> plan;  // of the sources
   std::vector<Unmatched> unmatched;
+  int parent = -1;  // of a derived layer: the place of the one that it is made of
 
   void Add(std::unique_ptr<RasterSource> source);
   // Once all are added: the finest comes last where the spec asks for it.

@@ -37,12 +37,31 @@ json LayerJson(const LayerRecord& layer) {
               {"kind", LayerKindName(layer.kind)},
               {"levels", layer.max_level + 1},
               {"pages", layer.pages}};
+  if (layer.derivation) out["made_of"] = {{"type", layer.derivation->type}, {"layer", layer.derivation->of}};
+  if (layer.property && !layer.property->classes.empty()) {
+    for (const PropertyClass& one : layer.property->classes) out["classes"].push_back(one.name);
+  } else if (layer.property) {
+    out["numbers"] = {
+        {"offset", layer.property->offset}, {"gain", layer.property->gain}, {"unit", layer.property->unit}};
+  }
   if (layer.step) {
     out["step_of"] = layer.step->layer;
     out["time"] = FormatIsoTime(layer.step->utc_s);
     if (layer.step->repeats == Repeats::kEveryYear) out["repeats"] = "year";
   }
   return out;
+}
+
+// "classes: 0 land, 1 water", or "numbers: 0 + 0.5 * byte, deg"
+std::string MeaningOf(const PropertyRecord& property) {
+  if (property.classes.empty())
+    return fmt::format("numbers: {:.6g} + {:.6g} * byte{}{}{}", property.offset, property.gain,
+                       property.unit.empty() ? "" : ", ", property.unit,
+                       property.channels > 1 ? fmt::format(", {} channels", property.channels) : "");
+  std::string text = "classes:";
+  for (size_t i = 0; i < property.classes.size(); ++i)
+    text += fmt::format("{} {} {}", i == 0 ? "" : ",", i, property.classes[i].name);
+  return text;
 }
 
 // "from 2004-01-01T00:00:00Z on, every year"
@@ -92,6 +111,15 @@ void VerifyNode(const Dataset& dataset, int layer, Quadcode node, Verification& 
   }
   if (record.kind == LayerKind::kImagery) {
     if (const auto page = dataset.ReadImage(layer, node); !page.ok()) out.problems.push_back(page.message());
+    return;
+  }
+  if (record.kind == LayerKind::kProperty) {
+    const auto property = dataset.ReadProperty(layer, node);
+    if (!property.ok())
+      out.problems.push_back(property.message());
+    else if ((*property)->channels != record.property->channels)
+      out.problems.push_back(
+          fmt::format("layer {}: quadnode {} has {} channels", record.name, node.ToString(), (*property)->channels));
     return;
   }
   const auto page = dataset.ReadElevation(layer, node);
@@ -151,6 +179,9 @@ std::string DescribeDataset(const Dataset& dataset) {
     text += fmt::format("layer {} ({}): {} pages, {:.1f} MB, levels 0 to {}\n", layer.name, LayerKindName(layer.kind),
                         layer.pages, static_cast<double>(layer.bytes) / 1e6, layer.max_level);
     if (layer.step) text += fmt::format("  {}\n", SpanOf(*layer.step));
+    if (layer.derivation)
+      text += fmt::format("  made of layer {}, type \"{}\"\n", layer.derivation->of, layer.derivation->type);
+    if (layer.property) text += "  " + MeaningOf(*layer.property) + "\n";
     if (!layer.vertical_reference.empty()) text += fmt::format("  heights: {}\n", layer.vertical_reference);
     text += "  pages by level:";
     for (const int64_t pages : layer.pages_per_level) text += fmt::format(" {}", pages);

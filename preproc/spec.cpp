@@ -44,7 +44,8 @@ class Parser {
   explicit Parser(const std::string& path) : path_(path) {}
 
   Result<BuildSpec> Parse(const toml::table& root) {
-    if (Status status = CheckKeys(root, {"layer"}); !status.ok()) return status;
+    if (Status status = CheckKeys(root, {"layer", "type"}); !status.ok()) return status;
+    if (Status status = types_.Add(root, path_); !status.ok()) return status;
     BuildSpec spec;
     spec.path = path_;
     const toml::array* layers = root["layer"].as_array();
@@ -53,7 +54,7 @@ class Parser {
     }
     std::set<std::string> names;
     for (const toml::node& node : *layers) {
-      auto steps = ParseLayer(node);
+      auto steps = ParseLayer(node, spec.layers);
       if (!steps.ok()) return steps.status();
       const LayerSpec& first = steps->front();
       bool taken = first.step && !names.insert(first.step->layer).second;
@@ -117,10 +118,10 @@ class Parser {
   }
 
   // A layer, or all its steps.
-  Result<std::vector<LayerSpec>> ParseLayer(const toml::node& node) const {
+  Result<std::vector<LayerSpec>> ParseLayer(const toml::node& node, const std::vector<LayerSpec>& before) const {
     const toml::table* table = node.as_table();
     if (table == nullptr) return Error(node, "\"layer\" must be a table: write [[layer]]");
-    if (Status status = CheckKeys(*table, {"name", "kind", "source", "repeats", "priority"}); !status.ok())
+    if (Status status = CheckKeys(*table, {"name", "kind", "source", "repeats", "priority", "of"}); !status.ok())
       return status;
     LayerSpec layer;
     auto name = String(*table, "name");
@@ -129,10 +130,15 @@ class Parser {
     if (layer.name.empty()) return Error(*table, "\"name\" is empty");
     const auto kind = String(*table, "kind");
     if (!kind.ok()) return kind.status();
-    if (*kind != "elevation" && *kind != "imagery") {
-      return Error(*table->get("kind"), "\"kind\" must be \"elevation\" or \"imagery\", here it is \"{}\"", *kind);
+    const DeclaredType* type = types_.Find(*kind);
+    if (type == nullptr) {
+      return Error(*table->get("kind"),
+                   "\"kind\" must be \"elevation\", \"imagery\" or another data type; there is no \"{}\"", *kind);
     }
-    layer.kind = *kind == "elevation" ? LayerKind::kElevation : LayerKind::kImagery;
+    layer.kind = KindOf(type->meta);
+    if (!type->parent.empty()) return ParseDerived(*table, std::move(layer), *type, before);
+    if (const toml::node* of = table->get("of"))
+      return Error(*of, "\"of\" means nothing for {}, made of sources", *kind);
     if (Status status = ParsePriority(*table, layer); !status.ok()) return status;
     const toml::array* sources = (*table)["source"].as_array();
     if (sources == nullptr || sources->empty()) {
@@ -146,6 +152,30 @@ class Parser {
     const auto repeats = ParseRepeats(*table, layer);
     if (!repeats.ok()) return repeats.status();
     return StepsOf(std::move(layer), *repeats);
+  }
+
+  Result<std::vector<LayerSpec>> ParseDerived(const toml::table& table, LayerSpec layer, const DeclaredType& type,
+                                              const std::vector<LayerSpec>& before) const {
+    for (const std::string_view key : {"source", "repeats", "priority"}) {
+      if (const toml::node* node = table.get(key))
+        return Error(*node, "\"{}\" means nothing for {}, which is made of the pages of {}", key, type.name,
+                     type.parent);
+    }
+    const std::string of = table["of"].value_or(std::string());
+    if (table.contains("of") && of.empty()) return Error(*table.get("of"), "\"of\" must be a layer's name");
+    for (const LayerSpec& other : before) {
+      if (TypeOf(other) != type.parent || other.step || (!of.empty() && other.name != of)) continue;
+      layer.derived = {type, other.name};
+      return std::vector<LayerSpec>{std::move(layer)};
+    }
+    const bool is_here =
+        std::any_of(before.begin(), before.end(), [&](const LayerSpec& other) { return other.name == of; });
+    if (of.empty() || is_here) {
+      return Error(table, "layer \"{}\" is made of a layer of type \"{}\"{}, and none stands before it", layer.name,
+                   type.parent, of.empty() ? "" : " named \"" + of + "\"");
+    }
+    layer.derived = {type, of};  // of the dataset that this is added to
+    return std::vector<LayerSpec>{std::move(layer)};
   }
 
   Status ParsePriority(const toml::table& table, LayerSpec& layer) const {
@@ -337,12 +367,17 @@ class Parser {
   }
 
   const std::string& path_;
+  DeclaredTypes types_ = DeclaredTypes::Stock();
 };
 
 }  // namespace
 
 std::string NameOf(const SourceSpec& source) {
   return source.tiles.empty() ? source.written_path : source.written_path + " (" + source.tiles + ")";
+}
+
+std::string_view TypeOf(const LayerSpec& layer) {
+  return layer.derived ? std::string_view(layer.derived->type.name) : LayerKindName(layer.kind);
 }
 
 std::vector<LayerSpec> StepsOf(LayerSpec layer, Repeats repeats) {
@@ -356,8 +391,8 @@ std::vector<LayerSpec> StepsOf(LayerSpec layer, Repeats repeats) {
     return steps;
   }
   for (const double utc_s : times) {
-    LayerSpec step{
-        layer.name + "@" + FormatIsoTime(utc_s), layer.kind, {}, StepOf{layer.name, utc_s, repeats}, layer.priority};
+    LayerSpec step{layer.name + "@" + FormatIsoTime(utc_s), layer.kind,     {},
+                   StepOf{layer.name, utc_s, repeats},      layer.priority, {}};
     for (const bool timed : {false, true}) {
       for (const SourceSpec& source : layer.sources) {
         if (timed ? source.utc_s == utc_s : !source.utc_s) step.sources.push_back(source);

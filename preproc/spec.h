@@ -11,6 +11,7 @@
 // Threads: values.
 #pragma once
 
+#include "preproc/types/data_type.h"
 #include "runtime/base/status.h"
 #include "runtime/paging/dataset.h"
 
@@ -52,13 +53,22 @@ std::string NameOf(const SourceSpec& source);
 // Which of a layer's sources wins.
 enum class Priority { kOrder, kResolution };
 
+// Of a layer that is made of another's pages: its type, and the other's name.
+struct DerivedSpec {
+  DeclaredType type;
+  std::string of;
+};
+
 struct LayerSpec {
   std::string name;
   LayerKind kind = LayerKind::kElevation;
   std::vector<SourceSpec> sources;
   std::optional<StepOf> step;
   Priority priority = Priority::kOrder;
+  std::optional<DerivedSpec> derived{};  // it has no sources then
 };
+// The name of its data type.
+std::string_view TypeOf(const LayerSpec& layer);
 
 // One layer as the spec has it: itself, or its steps, the earliest first.
 std::vector<LayerSpec> StepsOf(LayerSpec layer, Repeats repeats);

@@ -6,6 +6,7 @@
 #include "preproc/mosaic.h"
 #include "preproc/open_layer.h"
 #include "preproc/page_sink.h"
+#include "preproc/types/derived_layers.h"
 #include "runtime/base/iso_time.h"
 #include "runtime/base/log.h"
 #include "runtime/base/mutex.h"
@@ -106,7 +107,6 @@ class Updater {
     if (!unchanged.AnyChange()) return {};
     if (Status status = MakePages(**geoid, unchanged, **writer); !status.ok()) return status;
     report_.pages_s = clock_.NowSeconds() - start_s - report_.opening_s;
-    if (Status status = RemoveGone(unchanged, **writer); !status.ok()) return status;
     report_.written = (*writer)->written();
     report_.removed = (*writer)->removed();
     return (*writer)->Finish(std::move(records), FormatIsoTime(std::floor(clock_.UtcSeconds())));
@@ -123,6 +123,10 @@ class Updater {
         layer.Add(std::move(*source));
       }
       layer.PutInOrder();
+      if (layer_spec.derived) layer.parent = ParentOf(spec.layers, layers_.size());
+      if (layer_spec.derived && layer.parent < 0)
+        return Status::Error("layer {}: there is no layer {} before it; the dataset {} is unchanged", layer_spec.name,
+                             layer_spec.derived->of, options_.out);
       layers_.push_back(std::move(layer));
     }
     return {};
@@ -147,8 +151,41 @@ class Updater {
           [&](size_t place) {
             return after[layer].kind == LayerKind::kElevation && layers_[layer].sources[place]->HasVoids();
           });
+      if (layers_[layer].spec.derived && !IsDerivedAlike(old, after[layer])) extents.push_back({-180, -90, 180, 90});
       FindChanged(layer, old);
       unchanged.Add(std::move(extents));
+    }
+    return {};
+  }
+
+  static bool IsDerivedAlike(const LayerRecord* before, const LayerRecord& after) {
+    return before != nullptr && before->derivation && before->derivation->of == after.derivation->of &&
+           before->derivation->definition == after.derivation->definition;
+  }
+
+  // Where what they are made of was made anew.
+  Status MakeDerived(const Geoid& geoid, UnchangedPages& unchanged, ChangeWriter& writer) {
+    const std::vector<LayerRecord>& before = writer.before().layers();
+    for (size_t i = 0; i < layers_.size(); ++i) {
+      const OpenLayer& layer = layers_[i];
+      if (!layer.spec.derived) continue;
+      const int number = static_cast<int>(i);
+      const bool is_alike = IsDerivedAlike(i < before.size() ? &before[i] : nullptr, layer.Record(geoid));
+      const auto parent_page = [&](Quadcode node) {
+        if (gone_.contains({layer.parent, node.word()})) return std::optional<std::vector<uint8_t>>();
+        auto put = writer.WasPut(layer.parent, node) ? writer.Get(layer.parent, node) : std::nullopt;
+        return put ? put : unchanged.Page(layer.parent, node);
+      };
+      const auto is_known = [&](Quadcode node) {
+        if (!is_alike || !unchanged.Exists(number, node) || writer.WasPut(layer.parent, node)) return false;
+        unchanged.Take(number, node);
+        return true;
+      };
+      const DerivedWork work{number, jobs_, options_.batch_bytes, parent_page, is_known};
+      const LayerKind parent = layers_[static_cast<size_t>(layer.parent)].spec.kind;
+      Status status = MakeDerivedLayer(*layer.spec.derived, work, parent, {geoid}, writer);
+      if (status.ok()) status = RemoveGone(number, unchanged, writer);
+      if (!status.ok()) return status;
     }
     return {};
   }
@@ -169,12 +206,13 @@ class Updater {
   Status MakePages(const Geoid& geoid, UnchangedPages& unchanged, ChangeWriter& writer) {
     PageSink sink(writer, options_.batch_bytes, [] { return std::string(); });
     int64_t planned = 0;
-    for (const OpenLayer& layer : layers_) planned += CountNodes(layer.plan);
+    for (const OpenLayer& layer : layers_) planned += layer.spec.derived ? 0 : CountNodes(layer.plan);
     std::optional<Progress> progress;
     if (options_.show_progress)
       progress.emplace(planned, clock_, [&sink] { return Progress::Written{sink.pages(), sink.bytes()}; });
     std::vector<std::unique_ptr<LayerBuilder>> builders;
     for (size_t i = 0; i < layers_.size(); ++i) {
+      if (layers_[i].spec.derived) continue;
       builders.push_back(std::make_unique<LayerBuilder>(static_cast<int>(i), layers_[i], geoid, sink, &unchanged,
                                                         progress ? &*progress : nullptr));
     }
@@ -188,7 +226,12 @@ class Updater {
     for (const OpenLayer& layer : layers_) {
       for (const Unmatched& unmatched : layer.unmatched) Warn(NameOf(unmatched.source->spec()), unmatched.reason);
     }
-    return written.ok() ? CheckChanged() : written;
+    if (!written.ok()) return written;
+    Status checked = CheckChanged();
+    for (size_t i = 0; checked.ok() && i < layers_.size(); ++i) {
+      if (!layers_[i].spec.derived) checked = RemoveGone(static_cast<int>(i), unchanged, writer);
+    }
+    return checked.ok() ? MakeDerived(geoid, unchanged, writer) : checked;
   }
 
   Status CheckChanged() {
@@ -207,21 +250,20 @@ class Updater {
     LogWarning("{}: {}", path, reason);
   }
 
-  // Pages that were there and are none of what the dataset is made of now.
-  static Status RemoveGone(const UnchangedPages& unchanged, ChangeWriter& writer) {
-    for (size_t layer = 0; layer < writer.before().layers().size(); ++layer) {
-      for (int tree = 0; tree < kTrees; ++tree) {
-        Status status = RemoveGoneFrom(unchanged, static_cast<int>(layer), Quadcode::Root(tree), writer);
-        if (!status.ok()) return status;
-      }
+  // Pages that were there and are none of what the layer is made of now.
+  Status RemoveGone(int layer, const UnchangedPages& unchanged, ChangeWriter& writer) {
+    if (static_cast<size_t>(layer) >= writer.before().layers().size()) return {};
+    for (int tree = 0; tree < kTrees; ++tree) {
+      if (Status status = RemoveGoneFrom(unchanged, layer, Quadcode::Root(tree), writer); !status.ok()) return status;
     }
     return {};
   }
 
-  static Status RemoveGoneFrom(const UnchangedPages& unchanged, int layer, Quadcode node, ChangeWriter& writer) {
+  Status RemoveGoneFrom(const UnchangedPages& unchanged, int layer, Quadcode node, ChangeWriter& writer) {
     if (!unchanged.Exists(layer, node) || unchanged.IsTaken(layer, node)) return {};
     if (!writer.WasPut(layer, node)) {
       if (Status status = writer.Remove(layer, node); !status.ok()) return status;
+      gone_.insert({layer, node.word()});
     }
     for (int which = 0; which < 4 && node.level() < kMaxLevel; ++which) {
       if (Status status = RemoveGoneFrom(unchanged, layer, node.Child(which), writer); !status.ok()) return status;
@@ -247,6 +289,7 @@ class Updater {
   BlockCache cache_;
   std::vector<OpenLayer> layers_;  // go before the cache
   std::vector<RasterSource*> changed_;
+  std::set<std::pair<int, uint64_t>> gone_;  // layers and quadcode words of pages that were there
   BuildReport report_;
 };
 

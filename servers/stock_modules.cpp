@@ -3,6 +3,7 @@
 #include "servers/image_modules.h"
 #include "servers/mip_levels.h"
 #include "servers/model_reader.h"
+#include "servers/property_tint.h"
 #include "servers/terrain_builder.h"
 
 #include <algorithm>
@@ -53,6 +54,24 @@ ReadModule ImageryModule(const Dataset& dataset, int layer, const LayerRecord& r
     return std::unique_ptr<Page>(std::make_unique<ImagePage>(std::move(**page)));
   };
   return module;
+}
+
+ReadModule PropertyModule(const Dataset& dataset, int layer, const LayerRecord& record) {
+  ReadModule module = LayerOf(dataset, layer, record, PageKind::kColour);
+  module.is_made = true;
+  module.read = [&dataset, layer, &meaning = *record.property](ReadContext&,
+                                                               Quadcode node) -> Result<std::unique_ptr<Page>> {
+    const Result<std::shared_ptr<PropertyPage>> page = dataset.ReadProperty(layer, node);
+    if (!page.ok()) return page.status();
+    return std::unique_ptr<Page>(TintProperty(**page, meaning));
+  };
+  return module;
+}
+
+ReadModule ModuleOf(const Dataset& dataset, int layer, const LayerRecord& record) {
+  if (record.kind == LayerKind::kElevation) return ElevationModule(dataset, layer, record);
+  return record.kind == LayerKind::kImagery ? ImageryModule(dataset, layer, record)
+                                            : PropertyModule(dataset, layer, record);
 }
 
 // The finest heights there are for a quadnode: its own page, or that of an ancestor; none where even the root is bad.
@@ -169,9 +188,7 @@ Status RegisterStockModules(ModuleRegistry& registry, const Dataset& dataset, co
   BELVEDERE_CHECK(options.exaggeration > 0);
   for (int layer = 0; layer < static_cast<int>(dataset.layers().size()); ++layer) {
     const LayerRecord& record = dataset.layers()[static_cast<size_t>(layer)];
-    const bool heights = record.kind == LayerKind::kElevation;
-    const Status added =
-        registry.Add(heights ? ElevationModule(dataset, layer, record) : ImageryModule(dataset, layer, record));
+    const Status added = registry.Add(ModuleOf(dataset, layer, record));
     if (!added.ok()) return Status::Error("{}: {}", dataset.path(), added.message());
   }
   const std::optional<int> layer = dataset.FindLayer(LayerKind::kElevation);

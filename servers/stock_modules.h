@@ -2,6 +2,7 @@
 //
 //   (dataset's own)  each elevation and imagery layer of the dataset, by its name; imagery gets its mip levels here.
 //                    Of a layer that changes with the time, each step: the first by the layer's name
+//                    A surface property is shown in the colours of its classes (property_tint.h)
 //   terrain          what is drawn of heights: of the first elevation layer, wherever any elevation or imagery exists,
 //                    so that imagery finer than the heights has a surface to lie on. All 32 roots always exist
 //   grid             lines of latitude and longitude, where terrain exists

@@ -42,6 +42,9 @@ class LmdbDataset final : public Dataset {
   Result<std::shared_ptr<ImagePage>> ReadImage(int layer, Quadcode node) const override {
     return Read<ImagePage>(layer, node, DecodeImage);
   }
+  Result<std::shared_ptr<PropertyPage>> ReadProperty(int layer, Quadcode node) const override {
+    return Read<PropertyPage>(layer, node, DecodeProperty);
+  }
   std::optional<std::vector<uint8_t>> ReadRaw(int layer, Quadcode node) const override {
     return Copy(store::MakeKey(layer, node.word()));
   }
@@ -84,7 +87,7 @@ class LmdbDataset final : public Dataset {
 }  // namespace
 
 std::string_view LayerKindName(LayerKind kind) {
-  return kind == LayerKind::kElevation ? "elevation" : "imagery";
+  return kind == LayerKind::kElevation ? "elevation" : kind == LayerKind::kImagery ? "imagery" : "property";
 }
 
 Result<std::unique_ptr<Dataset>> Dataset::Open(const std::string& path) {

@@ -31,8 +31,8 @@ namespace belvedere {
 inline constexpr int kDatasetVersion = 2;
 inline constexpr int kMaxDatasetLayers = 256;
 
-enum class LayerKind : uint8_t { kElevation = 1, kImagery = 2 };
-std::string_view LayerKindName(LayerKind kind);  // "elevation", "imagery"
+enum class LayerKind : uint8_t { kElevation = 1, kImagery = 2, kProperty = 4 };
+std::string_view LayerKindName(LayerKind kind);  // "elevation", "imagery", "property"
 
 // What a layer was made of, as recorded when it was built.
 // What a source's colours, 0 to 255, were made to be: gain * colour + offset, of red, green and blue.
@@ -53,6 +53,25 @@ struct SourceRecord {
   std::string state{};                    // the builder's: of its files when they were read
 };
 
+// What the bytes of a property layer's pages mean: classes, by their number, or numbers, offset + gain * byte.
+struct PropertyClass {
+  std::string name;
+  std::array<uint8_t, 4> colour{};  // sRGB and alpha, by which it is shown
+};
+struct PropertyRecord {
+  int channels = 1;
+  std::vector<PropertyClass> classes;  // none: numbers
+  double offset = 0, gain = 1;
+  std::string unit;  // of numbers; may be empty
+};
+
+// A layer that was made of the pages of another.
+struct Derivation {
+  std::string type;        // of data, by its name
+  std::string of;          // the other layer's name
+  std::string definition;  // the builder's: of the type, a JSON object
+};
+
 struct LayerRecord {
   std::string name;
   LayerKind kind = LayerKind::kElevation;
@@ -62,9 +81,11 @@ struct LayerRecord {
   int64_t bytes = 0;               // stored bytes of all its pages
   std::string vertical_reference;  // elevation: "WGS 84 ellipsoid", and the geoid that the sources were lifted by
   std::vector<SourceRecord> sources;
-  std::optional<StepOf> step{};  // imagery: it is one step of a layer that changes with the time
-  int rules = 0;                 // the builder's: by which it makes pages of sources
-  bool finest_last = false;      // the builder's: sources are in the order of their resolution
+  std::optional<StepOf> step{};              // imagery: it is one step of a layer that changes with the time
+  int rules = 0;                             // the builder's: by which it makes pages of sources
+  bool finest_last = false;                  // the builder's: sources are in the order of their resolution
+  std::optional<PropertyRecord> property{};  // of kProperty
+  std::optional<Derivation> derivation{};
 };
 
 class Dataset {
@@ -95,6 +116,8 @@ class Dataset {
   virtual Result<std::shared_ptr<ElevationPage>> ReadElevation(int layer, Quadcode node) const = 0;
   // Level 0 of the texels is filled; there is room for the other kImageMipLevels - 1, zeroed. Always kRGBA8.
   virtual Result<std::shared_ptr<ImagePage>> ReadImage(int layer, Quadcode node) const = 0;
+
+  virtual Result<std::shared_ptr<PropertyPage>> ReadProperty(int layer, Quadcode node) const = 0;
 
   // Stored bytes of a page, as ReadElevation decodes them; nullopt when it is not there.
   virtual std::optional<std::vector<uint8_t>> ReadRaw(int layer, Quadcode node) const = 0;

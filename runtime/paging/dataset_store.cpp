@@ -67,6 +67,30 @@ SourceRecord SourceFromJson(const json& in) {
   return source;
 }
 
+json PropertyToJson(const PropertyRecord& property) {
+  json out = {{"channels", property.channels}};
+  for (const PropertyClass& one : property.classes)
+    out["classes"].push_back({{"name", one.name}, {"colour", one.colour}});
+  if (!property.classes.empty()) return out;
+  out["offset"] = property.offset;
+  out["gain"] = property.gain;
+  out["unit"] = property.unit;
+  return out;
+}
+
+PropertyRecord PropertyFromJson(const json& in) {
+  PropertyRecord property;
+  property.channels = in.at("channels").get<int>();
+  if (in.contains("classes")) {
+    for (const json& one : in.at("classes"))
+      property.classes.push_back({one.at("name").get<std::string>(), one.at("colour").get<std::array<uint8_t, 4>>()});
+  }
+  property.offset = in.value("offset", 0.0);
+  property.gain = in.value("gain", 1.0);
+  property.unit = in.value("unit", std::string());
+  return property;
+}
+
 json LayerToJson(const LayerRecord& layer) {
   json sources = json::array();
   for (const auto& source : layer.sources) sources.push_back(SourceToJson(source));
@@ -81,6 +105,11 @@ json LayerToJson(const LayerRecord& layer) {
   if (layer.step) out["step_of"] = StepToJson(*layer.step);
   if (layer.rules != 0) out["rules"] = layer.rules;
   if (layer.finest_last) out["priority"] = "resolution";
+  if (layer.property) out["property"] = PropertyToJson(*layer.property);
+  if (layer.derivation) {
+    out["made_of"] = {{"type", layer.derivation->type}, {"layer", layer.derivation->of}};
+    if (!layer.derivation->definition.empty()) out["made_of"]["definition"] = json::parse(layer.derivation->definition);
+  }
   return out;
 }
 
@@ -88,9 +117,10 @@ LayerRecord LayerFromJson(const json& in) {
   LayerRecord layer;
   layer.name = in.at("name").get<std::string>();
   const auto kind = in.at("kind").get<std::string>();
-  if (kind != "elevation" && kind != "imagery")
-    throw json::other_error::create(501, "unknown layer kind " + kind, nullptr);
-  layer.kind = kind == "elevation" ? LayerKind::kElevation : LayerKind::kImagery;
+  for (const LayerKind known : {LayerKind::kElevation, LayerKind::kImagery, LayerKind::kProperty}) {
+    if (kind == LayerKindName(known)) layer.kind = known;
+  }
+  if (kind != LayerKindName(layer.kind)) throw json::other_error::create(501, "unknown layer kind " + kind, nullptr);
   layer.max_level = in.at("max_level").get<int>();
   layer.pages_per_level = in.at("pages_per_level").get<std::vector<int64_t>>();
   layer.pages = in.at("pages").get<int64_t>();
@@ -100,6 +130,12 @@ LayerRecord LayerFromJson(const json& in) {
   if (in.contains("step_of") && layer.kind == LayerKind::kImagery) layer.step = StepFromJson(in.at("step_of"));
   layer.rules = in.value("rules", 0);
   layer.finest_last = in.value("priority", std::string()) == "resolution";
+  if (layer.kind == LayerKind::kProperty) layer.property = PropertyFromJson(in.at("property"));
+  if (in.contains("made_of")) {
+    const json& made = in.at("made_of");
+    layer.derivation = {made.at("type").get<std::string>(), made.at("layer").get<std::string>(),
+                        made.contains("definition") ? made.at("definition").dump() : std::string()};
+  }
   return layer;
 }
 

@@ -117,6 +117,21 @@ inline glm::vec3 PlaceOf(const TerrainVertex& vertex) {
 inline constexpr int kVerticesPerPage = kPosts * kPosts;
 inline constexpr int kBisections = 2 * kCellsLog2;  // levels of bisection from the two root triangles to single posts
 
+// A property of the ground, one or more bytes at each post of an elevation page: classes, or numbers in even steps, as
+// the layer's record says (PropertyRecord in dataset.h).
+struct PropertyPage final : Page {
+  int channels = 1;
+  std::vector<uint8_t> values;  // channel after channel, each kElevationSide^2, row by row from the south-west
+
+  // Post (column, row), each -kApron .. kPosts - 1 + kApron.
+  uint8_t at(int channel, int column, int row) const {
+    constexpr size_t kSide = static_cast<size_t>(kElevationSide);
+    return values[(static_cast<size_t>(channel) * kSide + static_cast<size_t>(row + kApron)) * kSide +
+                  static_cast<size_t>(column + kApron)];
+  }
+  size_t bytes() const override { return sizeof(*this) + values.capacity(); }
+};
+
 struct TerrainPage final : Page {
   Quadcode node;
   std::vector<TerrainVertex> vertices;  // kVerticesPerPage

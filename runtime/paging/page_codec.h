@@ -1,13 +1,13 @@
 // Page codec: between pages in memory and their bytes in a dataset. docs/dataset-format.md has the layout.
 //
-// Every value starts with a 20-byte header (little-endian): magic "BVPG", u8 version, u8 kind, u16 flags, u32 raw size,
-// u32 payload size, u32 CRC-32C of the first 16 header bytes and the payload. Elevation and images are lossless.
+// All kinds have the same envelope (page_envelope.h). All are lossless.
 //
 // Threads: pure functions.
 #pragma once
 
 #include "runtime/base/status.h"
 #include "runtime/paging/page.h"
+#include "runtime/paging/page_envelope.h"
 
 #include <cstdint>
 #include <memory>
@@ -16,19 +16,18 @@
 
 namespace belvedere {
 
-inline constexpr size_t kPageHeaderBytes = 20;
 inline constexpr size_t kImageTexels = static_cast<size_t>(kImageSide) * static_cast<size_t>(kImageSide);
-
-// CRC-32C (Castagnoli), as in RFC 3720; seed with 0, or with the CRC of what came before.
-uint32_t Crc32c(std::span<const uint8_t> bytes, uint32_t crc = 0);
 
 // REQUIRES: page.heights_mm.size() == kElevationSide^2
 std::vector<uint8_t> EncodeElevation(const ElevationPage& page);
 // rgba: kImageTexels x 4 bytes, level 0. Alpha is dropped where all of it is 255, and restored when decoded.
 std::vector<uint8_t> EncodeImage(std::span<const uint8_t> rgba);
+// REQUIRES: page.channels is 1 to 4, and there are as many planes of kElevationSide^2 values.
+std::vector<uint8_t> EncodeProperty(const PropertyPage& page);
 
 // The reason alone when the bytes are bad; the caller knows where they came from.
 Result<std::shared_ptr<ElevationPage>> DecodeElevation(std::span<const uint8_t> bytes);
 Result<std::shared_ptr<ImagePage>> DecodeImage(std::span<const uint8_t> bytes);
+Result<std::shared_ptr<PropertyPage>> DecodeProperty(std::span<const uint8_t> bytes);
 
 }  // namespace belvedere

@@ -90,6 +90,35 @@ TEST(PageCodec, ImagesComeBackToTheBitWithAndWithoutAlpha) {
 
 // The header is written out here; the payload is zstd's, whose bytes may change with its version, so of it only what it
 // unpacks to is held, by the tests above.
+TEST(PageCodec, PropertiesComeBackToTheBitAndTheirBytesArePinned) {
+  std::mt19937 random(9);
+  PropertyPage page;
+  page.channels = 2;
+  for (int i = 0; i < 2 * kElevationSide * kElevationSide; ++i) page.values.push_back(static_cast<uint8_t>(random()));
+  const std::vector<uint8_t> bytes = EncodeProperty(page);
+  EXPECT_EQ(bytes[5], 4);  // the kind
+  EXPECT_EQ(bytes[6], 2);  // flags: channels
+  EXPECT_EQ(bytes[7], 0);
+  std::vector<uint8_t> raw(page.values.size());
+  ASSERT_EQ(ZSTD_decompress(raw.data(), raw.size(), &bytes[kPageHeaderBytes], bytes.size() - kPageHeaderBytes),
+            raw.size());
+  EXPECT_EQ(raw[0], page.values[0]);
+  for (size_t i = 1; i < raw.size(); ++i) ASSERT_EQ(raw[i], static_cast<uint8_t>(page.values[i] - page.values[i - 1]));
+  const auto back = DecodeProperty(bytes);
+  ASSERT_TRUE(back.ok()) << back.message();
+  EXPECT_EQ((*back)->channels, 2);
+  EXPECT_EQ((*back)->values, page.values);
+  for (size_t i = 0; i < kPageHeaderBytes; ++i) {
+    std::vector<uint8_t> damaged = bytes;
+    damaged[i] ^= 0x15;
+    EXPECT_FALSE(DecodeProperty(damaged).ok()) << i;
+  }
+  EXPECT_FALSE(DecodeProperty(std::span(bytes).first(bytes.size() - 1)).ok());
+  EXPECT_FALSE(DecodeProperty(WrapPage(4, 9, raw, 1)).ok()) << "nine channels";
+  EXPECT_FALSE(DecodeProperty(WrapPage(4, 1, raw, 1)).ok()) << "of another size";
+  EXPECT_FALSE(DecodeImage(bytes).ok());
+}
+
 TEST(PageCodec, HeaderBytesArePinned) {
   ElevationPage flat;
   flat.heights_mm.assign(static_cast<size_t>(kElevationSide) * kElevationSide, 0);

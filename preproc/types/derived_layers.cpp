@@ -1,0 +1,65 @@
+#include "preproc/types/derived_layers.h"
+
+#include "preproc/layer_builder.h"
+#include "preproc/types/page_network.h"
+
+#include <utility>
+#include <vector>
+
+namespace belvedere {
+namespace {
+
+// The parent's pages, depth first.
+class ParentPages {
+ public:
+  explicit ParentPages(const DerivedWork& work) : work_(work) {
+    for (int tree = kTrees - 1; tree >= 0; --tree) to_come_.push_back(Quadcode::Root(tree));
+  }
+
+  std::optional<StoredPage> Next() {
+    while (!to_come_.empty()) {
+      const Quadcode node = to_come_.back();
+      to_come_.pop_back();
+      auto bytes = work_.parent_page(node);
+      if (!bytes) continue;
+      for (int which = 3; which >= 0 && node.level() < kMaxLevel; --which) to_come_.push_back(node.Child(which));
+      if (!work_.is_known(node)) return StoredPage{node, std::move(*bytes)};
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const DerivedWork& work_;
+  std::vector<Quadcode> to_come_;
+};
+
+}  // namespace
+
+int ParentOf(std::span<const LayerSpec> layers, size_t derived) {
+  for (size_t i = 0; i < derived; ++i) {
+    if (layers[i].name == layers[derived].derived->of) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+Status MakeDerivedLayer(const DerivedSpec& spec, const DerivedWork& work, LayerKind parent,
+                        const ModuleContext& context, DatasetWriter& writer) {
+  ParentPages pages(work);
+  int64_t uncommitted_bytes = 0;
+  const NetworkEnds ends{[&pages] { return pages.Next(); },
+                         [&](const StoredPage& page) {
+                           Status status = writer.Put(work.layer, page.node, page.bytes);
+                           uncommitted_bytes += static_cast<int64_t>(page.bytes.size());
+                           if (!status.ok() || uncommitted_bytes < work.batch_bytes) return status;
+                           uncommitted_bytes = 0;
+                           return writer.Commit();
+                         }};
+  const MetaType meta = parent == LayerKind::kElevation ? MetaType::kHeightField
+                        : parent == LayerKind::kImagery ? MetaType::kImage
+                                                        : MetaType::kSurfaceProperty;
+  Status status;
+  OnWorkers(work.jobs, [&] { status = RunNetwork(spec.type, meta, context, ends); });
+  return status.ok() ? writer.Commit() : status;
+}
+
+}  // namespace belvedere
