@@ -16,7 +16,7 @@ using namespace testing_rasters;
 TEST(UpdateFailure, KilledOrOnAFullDiskItLeavesTheDatasetAsItWas) {
   const std::string folder = FreshFolder("update_killed");
   Noise(folder + "/world.tif", 1, 128, 64, Degrees(-180, 90, 360.0 / 128), 1, 40);
-  Noise(folder + "/large.tif", 2, 2000, 2000, Degrees(10, 50, 0.01));
+  Noise(folder + "/large.tif", 2, 1200, 1200, Degrees(10, 50, 0.01));
   const std::string large = Layer("elevation", {"path = \"large.tif\""});
   ASSERT_TRUE(Succeeds([&] {
     MustBuild(folder, Layer("elevation", {"path = \"world.tif\""}));
