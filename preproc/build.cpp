@@ -12,14 +12,15 @@
 #include "runtime/paging/dataset_writer.h"
 
 #include <gdal_priv.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
+#include <thread>
 #include <utility>
 
 namespace belvedere {
@@ -48,6 +49,10 @@ class Builder {
       BlockCache cache(options_.cache_bytes);
       if (Status status = OpenSources(cache); !status.ok()) return status;
       if (made_of_.empty()) made_of_ = MadeOf(**geoid);
+      if (IsShardWhole()) return std::move(report_);
+      if (options_.merge > 0 && report_.rounds == 1) {
+        if (Status status = Merge(); !status.ok()) return status;
+      }
       auto writer = StartWriter();
       if (!writer.ok()) return writer.status();
       if (TakeNotes((*writer)->notes())) {
@@ -65,8 +70,10 @@ class Builder {
       report_.opening_s += opened_s - round_s;
       report_.pages_s += made_s - opened_s;
       if (excluded_.size() > left_out) continue;
-      if (Status status = MakeDerived(**geoid, **writer); !status.ok()) return status;
-      if (Status status = Finish(**geoid, **writer); !status.ok()) return status;
+      Status status = options_.shard ? FinishShard(**writer) : MakeDerived(**geoid, **writer);
+      if (status.ok() && !options_.shard) status = Finish(**geoid, **writer);
+      if (!status.ok()) return status;
+      if (options_.merge > 0) RemoveShards(options_.out);
       report_.finishing_s = clock_.NowSeconds() - made_s;
       report_.seconds = clock_.NowSeconds() - start_s;
       layers_.clear();  // before the cache goes
@@ -103,31 +110,72 @@ class Builder {
   }
 
   Result<std::unique_ptr<DatasetWriter>> StartWriter() {
-    if (options_.fresh && report_.rounds == 1) {
-      if (Status status = DatasetWriter::Discard(options_.out); !status.ok()) return status;
+    const std::string path = options_.shard ? ShardPath(options_.out, *options_.shard) : options_.out;
+    if (options_.shard) RemoveMark(options_.out, *options_.shard);
+    if (options_.fresh && options_.merge == 0 && report_.rounds == 1) {
+      if (Status status = DatasetWriter::Discard(path); !status.ok()) return status;
     }
-    return DatasetWriter::Create(options_.out, made_of_);
+    return DatasetWriter::Create(path, made_of_);
+  }
+
+  bool IsShardWhole() {
+    if (!options_.shard || options_.fresh || !IsWhole(options_.out, *options_.shard, made_of_)) return false;
+    report_.shard = options_.shard;
+    LogInfo("{}: is whole already", ShardPath(options_.out, *options_.shard));
+    layers_.clear();
+    return true;
+  }
+
+  Status FinishShard(DatasetWriter& writer) {
+    report_.shard = options_.shard;
+    Status status = writer.Note(Notes());
+    if (status.ok()) status = writer.Leave();
+    if (!status.ok()) return status;
+    for (size_t i = 0; i < layers_.size(); ++i)
+      report_.pages += static_cast<int64_t>(writer.Resumed(static_cast<int>(i)).size());
+    return MarkWhole(options_.out, *options_.shard, made_of_, writer);
+  }
+
+  // Leaves a store that this build goes on from, as if it had been interrupted.
+  Status Merge() {
+    WaitForShards();
+    auto writer = DatasetWriter::Create(options_.out, made_of_);
+    if (!writer.ok()) return writer.status();
+    const auto merged = MergeShards(options_.out, options_.merge, made_of_, options_.batch_bytes, **writer);
+    if (!merged.ok()) return merged.status();
+    for (const int number : merged->left_out)
+      LogWarning("shard {} of {} was made with sources that others found to be bad: its pages are made anew", number,
+                 options_.merge);
+    return (*writer)->Leave();
+  }
+
+  // Others write marks into a folder that may be on another machine: nothing tells but to look.
+  void WaitForShards() const {
+    constexpr auto kPause = std::chrono::milliseconds(200);
+    constexpr int kPausesALine = 50;
+    for (int pauses = 0; options_.wait_for_shards; ++pauses) {
+      std::string missing;
+      for (int number = 1; number <= options_.merge; ++number) {
+        if (!IsWhole(options_.out, {number, options_.merge}, made_of_)) missing += fmt::format(" {}", number);
+      }
+      if (missing.empty()) return;
+      if (pauses % kPausesALine == kPausesALine - 1) LogInfo("waits for shards{} of {}", missing, options_.merge);
+      std::this_thread::sleep_for(kPause);
+    }
   }
 
   // What a build that goes on from this one would not find out again.
-  std::string Notes() const {
-    nlohmann::json skipped = nlohmann::json::object(), seen = nlohmann::json::array();
-    for (const auto& [key, reason] : excluded_) skipped[key] = reason;
-    for (const std::string& key : SeenKeys()) seen.push_back(key);
-    return nlohmann::json{{"skipped", skipped}, {"seen", seen}}.dump(-1, ' ', true,
-                                                                     nlohmann::json::error_handler_t::replace);
-  }
+  std::string Notes() const { return NotesToJson({excluded_, SeenKeys()}); }
 
   // Whether sources are left out that were opened.
   bool TakeNotes(const std::string& text) {
-    if (text.empty()) return false;
-    const auto notes = nlohmann::json::parse(text);
-    for (const auto& key : notes.at("seen")) seen_before_.insert(key.get<std::string>());
+    const BuildNotes notes = NotesFromJson(text);
+    seen_before_.insert(notes.seen.begin(), notes.seen.end());
     const size_t before = excluded_.size();
     for (const LayerSpec& layer : spec_.layers) {
       for (const SourceSpec& source : layer.sources) {
-        const auto found = notes.at("skipped").find(KeyOf(layer, source));
-        if (found != notes.at("skipped").end()) Exclude(layer, source, found->get<std::string>());
+        const auto found = notes.skipped.find(KeyOf(layer, source));
+        if (found != notes.skipped.end()) Exclude(layer, source, found->second);
       }
     }
     return excluded_.size() > before;
@@ -195,9 +243,26 @@ class Builder {
     return {};
   }
 
+  std::vector<Unit> UnitsOfShard() const {
+    std::vector<Unit> all, own;
+    for (size_t i = 0; i < layers_.size(); ++i) {
+      if (layers_[i].spec.derived) continue;  // made when shards are merged
+      const std::vector<Unit> units = UnitsOf(static_cast<int>(i), layers_[i].plan);
+      all.insert(all.end(), units.begin(), units.end());
+    }
+    const std::vector<int> shard_of = ShardsOf(all, options_.shard->of);
+    for (size_t i = 0; i < all.size(); ++i) {
+      if (shard_of[i] == options_.shard->number - 1) own.push_back(all[i]);
+    }
+    return own;
+  }
+
   Status MakePages(const Geoid& geoid, DatasetWriter& writer) {
     int64_t planned = 0;
-    for (const OpenLayer& layer : layers_) planned += layer.spec.derived ? 0 : CountNodes(layer.plan);
+    for (const OpenLayer& layer : layers_) planned += layer.spec.derived || options_.shard ? 0 : CountNodes(layer.plan);
+    if (options_.shard) {
+      for (const Unit& unit : UnitsOfShard()) planned += unit.pages;
+    }
     ResumedPages resumed(writer, static_cast<int>(layers_.size()));
     report_.resumed = resumed.pages();
     if (report_.resumed > 0)
@@ -212,7 +277,10 @@ class Builder {
       builders.push_back(std::make_unique<LayerBuilder>(static_cast<int>(i), layers_[i], geoid, sink, &resumed,
                                                         progress ? &*progress : nullptr));
     }
-    BuildAllTrees(builders, jobs_);
+    if (options_.shard)
+      BuildUnits(builders, UnitsOfShard(), jobs_);
+    else
+      BuildAllTrees(builders, jobs_);
     return sink.Close();
   }
 

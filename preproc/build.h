@@ -10,6 +10,7 @@
 // Threads: blocks the caller; uses `jobs` workers and one writer.
 #pragma once
 
+#include "preproc/shards.h"
 #include "preproc/spec.h"
 #include "runtime/base/clock.h"
 #include "runtime/base/status.h"
@@ -17,6 +18,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +36,11 @@ struct BuildOptions {
   int64_t batch_bytes = int64_t{32} << 20;  // of pages, after which a killed build is gone on with from there
   bool fresh = false;                       // throws away what a killed build has left
   bool show_progress = true;
+  // Makes this part alone, as a shard beside the dataset (shards.h).
+  std::optional<Shard> shard{};
+  // More than 0: takes the pages of so many shards over, and makes the rest.
+  int merge = 0;
+  bool wait_for_shards = false;  // that others are still at
 };
 
 struct BuildReport {
@@ -42,12 +49,13 @@ struct BuildReport {
   int rounds = 0;  // more than one where pages were made with sources that then had to be left out
   int jobs = 0;
   int64_t pages = 0;
-  int64_t resumed = 0;     // pages of them that were taken over from a build that was interrupted
-  bool is_change = false;  // of a dataset that was there (update.h); then, of the pages:
-  int64_t written = 0;     // those that are new or have other bytes than before
-  int64_t removed = 0;     // those that are no longer there
-  int64_t bytes = 0;       // of the stores on disk
-  int64_t bytes_read = 0;  // of source pixels, unpacked
+  int64_t resumed = 0;           // pages of them that were taken over from a build that was interrupted
+  std::optional<Shard> shard{};  // it made this alone: pages are those of the shard, and there are no layers
+  bool is_change = false;        // of a dataset that was there (update.h); then, of the pages:
+  int64_t written = 0;           // those that are new or have other bytes than before
+  int64_t removed = 0;           // those that are no longer there
+  int64_t bytes = 0;             // of the stores on disk
+  int64_t bytes_read = 0;        // of source pixels, unpacked
   std::vector<LayerRecord> layers;
   std::vector<SourceRemark> skipped, warnings;
 };

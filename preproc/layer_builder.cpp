@@ -119,6 +119,18 @@ void OnWorkers(int jobs, const std::function<void()>& work) {
   arena.execute(work);
 }
 
+void BuildUnits(std::span<const std::unique_ptr<LayerBuilder>> builders, std::span<const Unit> units, int jobs) {
+  OnWorkers(jobs, [&] {
+    tbb::task_group trees;
+    for (const Unit& unit : units) {
+      const auto found =
+          std::find_if(builders.begin(), builders.end(), [&](const auto& one) { return one->number() == unit.layer; });
+      trees.run([&builder = **found, node = unit.node] { builder.BuildTree(node); });
+    }
+    trees.wait();
+  });
+}
+
 void BuildAllTrees(std::span<const std::unique_ptr<LayerBuilder>> builders, int jobs) {
   OnWorkers(jobs, [&] {
     tbb::task_group trees;

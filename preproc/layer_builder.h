@@ -12,6 +12,7 @@
 #include "preproc/page_sink.h"
 #include "preproc/progress.h"
 #include "preproc/surface_error.h"
+#include "preproc/units.h"
 
 #include <tbb/enumerable_thread_specific.h>
 
@@ -27,6 +28,8 @@ class LayerBuilder {
   LayerBuilder(int number, const OpenLayer& layer, const Geoid& geoid, PageSink& sink, KnownPages* known,
                Progress* progress);
 
+  int number() const { return number_; }
+  // The quadnode and all under it.
   void BuildTree(Quadcode root);
 
  private:
@@ -52,6 +55,8 @@ class LayerBuilder {
 int WorkersOf(int jobs);
 // Runs work on so many workers of oneTBB's.
 void OnWorkers(int jobs, const std::function<void()>& work);
+// The pages of these units alone. builders: one for each layer that a unit is of, by its number().
+void BuildUnits(std::span<const std::unique_ptr<LayerBuilder>> builders, std::span<const Unit> units, int jobs);
 // All pages of all layers that are made of sources, by so many workers.
 void BuildAllTrees(std::span<const std::unique_ptr<LayerBuilder>> builders, int jobs);
 

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cstdlib>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -45,6 +46,12 @@ belvedere::Status WritePage(const belvedere::BuildReport& report, const std::str
   return belvedere::WriteReportPage(**dataset, report, page.path.empty() ? own : page.path);
 }
 
+int SayShard(const belvedere::BuildReport& report, const std::string& out, bool json) {
+  fmt::print(stderr, "{}: {}\n", belvedere::ShardPath(out, *report.shard), belvedere::BuildReportLine(report));
+  if (json) fmt::print("{}\n", belvedere::BuildReportJson(report));
+  return 0;
+}
+
 int Say(const belvedere::BuildReport& report, const std::string& out, const PageOptions& page, bool json) {
   if (const belvedere::Status status = WritePage(report, out, page); !status.ok())
     return Fail(fmt::format("the dataset {} is built, but not its report: {}", out, status.message()));
@@ -58,7 +65,21 @@ int RunBuild(const std::string& spec_path, const belvedere::BuildOptions& option
   if (!spec.ok()) return Fail(spec.message());
   const auto report = belvedere::Build(*spec, options, belvedere::Clock::System());
   if (!report.ok()) return Fail(report.message());
-  return Say(*report, options.out, page, json);
+  return report->shard ? SayShard(*report, options.out, json) : Say(*report, options.out, page, json);
+}
+
+// One of several that mpirun or srun has started: each makes its shard, the first then takes all together.
+int RunRank(const std::string& spec_path, belvedere::BuildOptions options, const belvedere::Shard& rank,
+            const PageOptions& page, bool json) {
+  options.shard = rank;
+  options.show_progress = rank.number == 1;
+  const bool is_first = rank.number == 1;
+  const int code = RunBuild(spec_path, options, page, false);
+  if (code != 0 || !is_first) return code;
+  options.shard.reset();
+  options.merge = rank.of;
+  options.wait_for_shards = true;
+  return RunBuild(spec_path, options, page, json);
 }
 
 int RunUpdate(const belvedere::SpecChange& change, const belvedere::BuildOptions& options, const PageOptions& page,
@@ -128,6 +149,12 @@ int main(int argc, char** argv) {
   app.add_option("--out", options.out, "folder of the dataset; one that is there is replaced when the build succeeds");
   app.add_option("--jobs", options.jobs, "workers (default: one for each core)")->check(CLI::Range(1, 1024));
   app.add_flag("--fresh", options.fresh, "do not go on with a build that was interrupted");
+  std::string shard;
+  CLI::Option* sharding =
+      app.add_option("--shard", shard, "K/N: make the Kth of N parts alone, to be put together with --merge N");
+  app.add_option("--merge", options.merge, "put together the dataset of so many parts")
+      ->check(CLI::Range(1, 4096))
+      ->excludes(sharding);
   PageOptions page;
   CLI::Option* report = app.add_option(
       "--report", page.path, "where to write a page that shows what was built (default: DATASET/report.html)");
@@ -172,6 +199,8 @@ int main(int argc, char** argv) {
     const bool building = app.get_subcommands().empty();
     if (building && spec_path.empty()) throw CLI::RequiredError("SPEC");
     if (building && options.out.empty()) throw CLI::RequiredError("--out");
+    options.shard = belvedere::ParseShard(shard);
+    if (!shard.empty() && !options.shard) throw CLI::ValidationError("--shard", "must be K/N, K from 1 to N");
   } catch (const CLI::ParseError& problem) {
     return app.exit(problem) == 0 ? 0 : 2;
   }
@@ -191,5 +220,9 @@ int main(int argc, char** argv) {
     return RunUpdate([](belvedere::BuildSpec spec) -> belvedere::Result<belvedere::BuildSpec> { return spec; }, options,
                      page, json);
   }
+  const bool is_part = options.shard || options.merge > 0;
+  const auto rank = is_part ? std::nullopt
+                            : belvedere::ShardOfRank([](const char* name) -> const char* { return std::getenv(name); });
+  if (rank) return RunRank(spec_path, options, *rank, page, json);
   return RunBuild(spec_path, options, page, json);
 }

@@ -162,6 +162,10 @@ std::string BuildReportLine(const BuildReport& report) {
     return fmt::format("{} pages, of which {} are new or changed, and {} are gone, in {:.1f} s", report.pages,
                        report.written, report.removed, report.seconds);
   }
+  if (report.shard) {
+    return fmt::format("shard {} of {} is whole: {} pages in {:.1f} s", report.shard->number, report.shard->of,
+                       report.pages, report.seconds);
+  }
   const std::string resumed =
       report.resumed == 0 ? ""
                           : fmt::format(" ({} of them taken over from the build that was interrupted)", report.resumed);

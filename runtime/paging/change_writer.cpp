@@ -67,6 +67,7 @@ class StackedWriter final : public ChangeWriter {
     return store_.Get(store::MakeDeviationsKey(layer, node.word()));
   }
   std::vector<uint64_t> Resumed(int) override { return {}; }
+  Status Leave() override { return Status::Error("a change is made whole or not at all"); }
   const std::string& notes() const override { return notes_; }
   bool WasPut(int layer, Quadcode node) const override { return put_.contains({layer, node.word()}); }
   int64_t written() const override { return written_; }

@@ -14,18 +14,32 @@ namespace {
 
 class WholeWriter final : public DatasetWriter {
  public:
-  explicit WholeWriter(const std::string& path) : store_(path) {}
+  explicit WholeWriter(const std::string& path) : path_(path), store_(path) {}
 
   Status Start(const std::string& made_of) {
     if (Status status = store_.Lock(); !status.ok()) return status;
     if (!store_.GoOn(made_of)) return store_.StartEmpty(made_of);
-    notes_ = store_.GetText(store::kNotesKey).value_or(std::string());
-    store_.ForEachPage([this](int layer, Quadcode node, size_t) { resumed_[layer].push_back(node.word()); });
+    List();
+    return {};
+  }
+
+  Status StartFromLeft(const std::string& made_of) {
+    if (Status status = store_.Lock(); !status.ok()) return status;
+    store_.Leave();
+    if (!store_.GoOn(made_of))
+      return Status::Error("{}.partial: there is nothing to go on from, or it is of other sources", path_);
+    List();
     return {};
   }
 
   Status Put(int layer, Quadcode node, const std::vector<uint8_t>& value) override {
     return store_.Put(store::MakeKey(layer, node.word()), value);
+  }
+  Status Leave() override {
+    store_.Leave();
+    Status status = store_.Commit();
+    List();
+    return status;
   }
   Status PutDeviations(int layer, Quadcode node, const std::vector<uint8_t>& value) override {
     return store_.Put(store::MakeDeviationsKey(layer, node.word()), value);
@@ -54,6 +68,13 @@ class WholeWriter final : public DatasetWriter {
   }
 
  private:
+  void List() {
+    notes_ = store_.GetText(store::kNotesKey).value_or(std::string());
+    resumed_.clear();
+    store_.ForEachPage([this](int layer, Quadcode node, size_t) { resumed_[layer].push_back(node.word()); });
+  }
+
+  const std::string path_;
   LmdbWriter store_;
   std::map<int, std::vector<uint64_t>> resumed_;  // by layer
   std::string notes_;
@@ -71,6 +92,14 @@ std::string NewStoreId() {
 Result<std::unique_ptr<DatasetWriter>> DatasetWriter::Create(const std::string& path, const std::string& made_of) {
   auto writer = std::make_unique<WholeWriter>(path);
   if (Status status = writer->Start(made_of); !status.ok()) return status;
+  return std::unique_ptr<DatasetWriter>(std::move(writer));
+}
+
+Result<std::unique_ptr<DatasetWriter>> DatasetWriter::TakeUp(const std::string& path, const std::string& made_of) {
+  std::error_code error;
+  if (!std::filesystem::exists(path + ".partial", error)) return Status::Error("{}.partial: it is not there", path);
+  auto writer = std::make_unique<WholeWriter>(path);
+  if (Status status = writer->StartFromLeft(made_of); !status.ok()) return status;
   return std::unique_ptr<DatasetWriter>(std::move(writer));
 }
 

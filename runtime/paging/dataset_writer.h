@@ -27,9 +27,12 @@ class DatasetWriter {
   // made_of: all that the pages depend on, as text. Where it is empty, or not that of what an earlier writer left, the
   // store starts empty.
   static Result<std::unique_ptr<DatasetWriter>> Create(const std::string& path, const std::string& made_of = {});
+  // What a writer has left that makes a dataset of the same. Fails where there is nothing, or it is of something else,
+  // which stays as it is.
+  static Result<std::unique_ptr<DatasetWriter>> TakeUp(const std::string& path, const std::string& made_of);
   // Throws away what a writer that was killed has left, if no other is at work there.
   static Status Discard(const std::string& path);
-  virtual ~DatasetWriter() = default;  // unless finished, removes the partial store
+  virtual ~DatasetWriter() = default;  // unless finished or left, removes the partial store
 
   // value: an encoded page (page_codec.h). A page put twice keeps the last value.
   virtual Status Put(int layer, Quadcode node, const std::vector<uint8_t>& value) = 0;
@@ -40,6 +43,9 @@ class DatasetWriter {
   // Makes what was put so far durable in the partial store. Whenever the system stops, what was committed last is
   // there, or what was before it.
   virtual Status Commit() = 0;
+
+  // Commits, and leaves all that is there, now and when the writer goes, for whoever goes on from it.
+  virtual Status Leave() = 0;
 
   // What was put before, also by the writer that this one goes on from; nullopt when there is none.
   virtual std::optional<std::vector<uint8_t>> Get(int layer, Quadcode node) = 0;

@@ -24,7 +24,7 @@ std::span<const uint8_t> BytesOf(std::string_view text) {
 
 LmdbWriter::~LmdbWriter() {
   Close();
-  if (lock_ == nullptr || in_place_) return;
+  if (lock_ == nullptr || stays_) return;
   std::error_code ignored;
   fs::remove_all(partial_, ignored);
 }
@@ -156,7 +156,7 @@ Status LmdbWriter::MoveIntoPlace(const store::Metadata& metadata, const std::str
   fs::create_directories(path_, error);
   if (!error) fs::rename(fs::path(partial_) / store::kStoreFile, fs::path(path_) / file, error);
   if (error) return Status::Error("{}: cannot move the new dataset into place: {}", path_, error.message());
-  in_place_ = true;
+  stays_ = true;
   // They lie over what is no longer there, so that nobody looks at them any more.
   for (int number = last_change + 1; fs::remove(fs::path(path_) / store::ChangeFile(number), error); ++number) {
   }

@@ -25,7 +25,7 @@ namespace belvedere {
 class LmdbWriter {
  public:
   explicit LmdbWriter(const std::string& path) : path_(path), partial_(path + ".partial") {}
-  ~LmdbWriter();  // unless it is moved into place, removes the partial store
+  ~LmdbWriter();  // unless it is moved into place or left, removes the partial store
   LmdbWriter(const LmdbWriter&) = delete;
   LmdbWriter& operator=(const LmdbWriter&) = delete;
 
@@ -34,6 +34,8 @@ class LmdbWriter {
   // Goes on with the store that an earlier writer left, if it was made of the same, which is not empty.
   bool GoOn(const std::string& made_of);
   Status StartEmpty(const std::string& made_of);
+  // From here on the partial store stays when the writer goes.
+  void Leave() { stays_ = true; }
 
   Status Put(std::span<const uint8_t> key, std::span<const uint8_t> value) EXCLUDES_LOCK(mutex_);
   // Leaves what is there as it is.
@@ -60,7 +62,7 @@ class LmdbWriter {
 
   const std::string path_, partial_;
   std::unique_ptr<FolderLock> lock_;
-  bool in_place_ = false;
+  bool stays_ = false;
   Mutex mutex_;  // of the transaction
   MDB_env* env_ = nullptr;
   MDB_txn* txn_ = nullptr;
