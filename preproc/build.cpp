@@ -119,9 +119,11 @@ class Builder {
   }
 
   bool IsShardWhole() {
-    if (!options_.shard || options_.fresh || !IsWhole(options_.out, *options_.shard, made_of_)) return false;
+    if (!options_.shard || options_.fresh) return false;
+    const auto pages = PagesOfWhole(options_.out, *options_.shard, made_of_);
+    if (!pages) return false;
     report_.shard = options_.shard;
-    LogInfo("{}: is whole already", ShardPath(options_.out, *options_.shard));
+    report_.pages = report_.resumed = *pages;
     layers_.clear();
     return true;
   }
@@ -156,7 +158,7 @@ class Builder {
     for (int pauses = 0; options_.wait_for_shards; ++pauses) {
       std::string missing;
       for (int number = 1; number <= options_.merge; ++number) {
-        if (!IsWhole(options_.out, {number, options_.merge}, made_of_)) missing += fmt::format(" {}", number);
+        if (!PagesOfWhole(options_.out, {number, options_.merge}, made_of_)) missing += fmt::format(" {}", number);
       }
       if (missing.empty()) return;
       if (pauses % kPausesALine == kPausesALine - 1) LogInfo("waits for shards{} of {}", missing, options_.merge);
@@ -212,10 +214,7 @@ class Builder {
 
   bool FindParent(OpenLayer& derived) {
     const DerivedSpec& spec = *derived.spec.derived;
-    for (size_t i = 0; i < layers_.size(); ++i) {
-      if (layers_[i].spec.name == spec.of && TypeOf(layers_[i].spec) == spec.type.parent)
-        derived.parent = static_cast<int>(i);
-    }
+    derived.parent = ParentOf(derived.spec, layers_).value_or(-1);
     if (derived.parent >= 0) return true;
     const std::string reason =
         fmt::format("there is no layer {} of type \"{}\" that it could be made of", spec.of, spec.type.parent);
@@ -236,9 +235,8 @@ class Builder {
           number, jobs_, options_.batch_bytes, [&](Quadcode node) { return writer.Get(layer.parent, node); },
           [&known](Quadcode node) { return std::binary_search(known.begin(), known.end(), node.word()); }};
       LogInfo("layer {} is made of layer {}", layer.spec.name, layer.spec.derived->of);
-      const LayerKind parent = layers_[static_cast<size_t>(layer.parent)].spec.kind;
-      if (Status status = MakeDerivedLayer(*layer.spec.derived, work, parent, {geoid}, writer); !status.ok())
-        return status;
+      const LayerSpec& parent = layers_[static_cast<size_t>(layer.parent)].spec;
+      if (Status status = MakeDerivedLayer(layer.spec, parent, work, geoid, writer); !status.ok()) return status;
     }
     return {};
   }
@@ -259,10 +257,9 @@ class Builder {
 
   Status MakePages(const Geoid& geoid, DatasetWriter& writer) {
     int64_t planned = 0;
+    const std::vector<Unit> units = options_.shard ? UnitsOfShard() : std::vector<Unit>();
+    for (const Unit& unit : units) planned += unit.pages;
     for (const OpenLayer& layer : layers_) planned += layer.spec.derived || options_.shard ? 0 : CountNodes(layer.plan);
-    if (options_.shard) {
-      for (const Unit& unit : UnitsOfShard()) planned += unit.pages;
-    }
     ResumedPages resumed(writer, static_cast<int>(layers_.size()));
     report_.resumed = resumed.pages();
     if (report_.resumed > 0)
@@ -278,7 +275,7 @@ class Builder {
                                                         progress ? &*progress : nullptr));
     }
     if (options_.shard)
-      BuildUnits(builders, UnitsOfShard(), jobs_);
+      BuildUnits(builders, units, jobs_);
     else
       BuildAllTrees(builders, jobs_);
     return sink.Close();

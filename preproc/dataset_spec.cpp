@@ -50,9 +50,8 @@ Status AddLayer(BuildSpec& spec, const LayerSpec& added, size_t layers_before) {
   }
   if (known) return {};
   if (added.derived) {
-    const bool has_parent = std::any_of(spec.layers.begin(), spec.layers.end(), [&](const LayerSpec& layer) {
-      return layer.name == added.derived->of && TypeOf(layer) == added.derived->type.parent;
-    });
+    const bool has_parent = std::any_of(spec.layers.begin(), spec.layers.end(),
+                                        [&](const LayerSpec& layer) { return IsMadeOf(added, layer); });
     if (!has_parent)
       return Status::Error("layer {}: there is no layer {} of type \"{}\" that it could be made of", added.name,
                            added.derived->of, added.derived->type.parent);

@@ -223,6 +223,9 @@ int main(int argc, char** argv) {
   const bool is_part = options.shard || options.merge > 0;
   const auto rank = is_part ? std::nullopt
                             : belvedere::ShardOfRank([](const char* name) -> const char* { return std::getenv(name); });
+  if (rank && options.fresh)
+    return Fail(fmt::format("--fresh means each rank's own part alone; remove {}.shards before they start instead",
+                            options.out));
   if (rank) return RunRank(spec_path, options, *rank, page, json);
   return RunBuild(spec_path, options, page, json);
 }

@@ -57,6 +57,13 @@ LayerRecord OpenLayer::Record(const Geoid& geoid) const {
   return record;
 }
 
+std::optional<int> ParentOf(const LayerSpec& derived, std::span<const OpenLayer> layers) {
+  for (size_t i = 0; i < layers.size(); ++i) {
+    if (IsMadeOf(derived, layers[i].spec)) return static_cast<int>(i);
+  }
+  return std::nullopt;
+}
+
 void PrepareGdal(std::span<const LayerSpec> layers) {
   GDALAllRegister();
   CPLSetErrorHandler(CPLQuietErrorHandler);

@@ -10,6 +10,7 @@
 #include "runtime/earth/geoid.h"
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -33,6 +34,9 @@ struct OpenLayer {
   // All that the dataset says of it but for its pages' counts.
   LayerRecord Record(const Geoid& geoid) const;
 };
+
+// The place among them of the layer that a derived one is made of; nothing where it is not there.
+std::optional<int> ParentOf(const LayerSpec& derived, std::span<const OpenLayer> layers);
 
 // Before any source is opened: GDAL's drivers and caches, and the network only where a source asks for it.
 void PrepareGdal(std::span<const LayerSpec> layers);

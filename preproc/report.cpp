@@ -163,6 +163,9 @@ std::string BuildReportLine(const BuildReport& report) {
                        report.written, report.removed, report.seconds);
   }
   if (report.shard) {
+    if (report.pages == report.resumed)
+      return fmt::format("shard {} of {} is whole already: {} pages", report.shard->number, report.shard->of,
+                         report.pages);
     return fmt::format("shard {} of {} is whole: {} pages in {:.1f} s", report.shard->number, report.shard->of,
                        report.pages, report.seconds);
   }

@@ -62,6 +62,40 @@ uint32_t DigestWith(uint32_t digest, int layer, Quadcode node, const std::vector
   return deviations ? Crc32c(*deviations, digest) : digest;
 }
 
+// Stores map much address space each: one is open at a time.
+Result<std::unique_ptr<DatasetWriter>> OpenWhole(const std::string& out, const Shard& shard,
+                                                 const std::string& made_of) {
+  if (!PagesOfWhole(out, shard, made_of)) {
+    return Status::Error(
+        "{}: shard {} of {} is {}; make it with --shard {}/{}", ShardPath(out, shard), shard.number, shard.of,
+        ReadMark(out, shard) ? "made of other sources, or by another program" : "not there, or not whole", shard.number,
+        shard.of);
+  }
+  return DatasetWriter::TakeUp(ShardPath(out, shard), made_of);
+}
+
+Status CopyShard(const std::string& out, const Shard& shard, const std::string& made_of, int64_t batch_bytes,
+                 DatasetWriter& into) {
+  const auto store = OpenWhole(out, shard, made_of);
+  if (!store.ok()) return store.status();
+  int64_t pages = 0, uncommitted_bytes = 0;
+  uint32_t digest = 0;
+  Status status = ForEachPage(**store, [&](int layer, Quadcode node, const auto& page, const auto& deviations) {
+    ++pages;
+    digest = DigestWith(digest, layer, node, page, deviations);
+    uncommitted_bytes += static_cast<int64_t>(page.size());
+    Status put = deviations ? into.PutDeviations(layer, node, *deviations) : Status();
+    if (put.ok()) put = into.Put(layer, node, page);
+    if (!put.ok() || uncommitted_bytes < batch_bytes) return put;
+    uncommitted_bytes = 0;
+    return into.Commit();
+  });
+  if (!status.ok() || ReadMark(out, shard) == MarkOf(made_of, pages, digest)) return status;
+  return Status::Error(
+      "{}: its pages are not those of its mark: it is damaged; make it again with --shard {}/{} --fresh",
+      ShardPath(out, shard), shard.number, shard.of);
+}
+
 std::optional<int> Number(const char* text) {
   if (text == nullptr) return std::nullopt;
   const std::string_view all = text;
@@ -130,59 +164,33 @@ void RemoveMark(const std::string& out, const Shard& shard) {
   fs::remove(MarkPath(out, shard), error);
 }
 
-bool IsWhole(const std::string& out, const Shard& shard, const std::string& made_of) {
+std::optional<int64_t> PagesOfWhole(const std::string& out, const Shard& shard, const std::string& made_of) {
   const auto mark = ReadMark(out, shard);
-  return mark && mark->starts_with(Fingerprint(made_of) + " ");
+  const std::string start = Fingerprint(made_of) + " ";
+  int64_t pages = 0;
+  if (!mark || !mark->starts_with(start)) return std::nullopt;
+  const auto [end, problem] = std::from_chars(mark->data() + start.size(), mark->data() + mark->size(), pages);
+  return problem == std::errc() ? std::optional(pages) : std::nullopt;
 }
 
 Result<Merged> MergeShards(const std::string& out, int shards, const std::string& made_of, int64_t batch_bytes,
                            DatasetWriter& into) {
   Merged merged;
-  std::vector<std::unique_ptr<DatasetWriter>> stores;
   std::vector<BuildNotes> notes;
   for (int number = 1; number <= shards; ++number) {
-    const Shard shard{number, shards};
-    const std::string path = ShardPath(out, shard);
-    if (!IsWhole(out, shard, made_of)) {
-      return Status::Error(
-          "{}: shard {} of {} is {}; make it with --shard {}/{}", path, number, shards,
-          ReadMark(out, shard) ? "made of other sources, or by another program" : "not there, or not whole", number,
-          shards);
-    }
-    auto store = DatasetWriter::TakeUp(path, made_of);
+    const auto store = OpenWhole(out, {number, shards}, made_of);
     if (!store.ok()) return store.status();
-    stores.push_back(std::move(*store));
-    notes.push_back(NotesFromJson(stores.back()->notes()));
+    notes.push_back(NotesFromJson((*store)->notes()));
     merged.notes.skipped.insert(notes.back().skipped.begin(), notes.back().skipped.end());
   }
-  int64_t uncommitted_bytes = 0;
   for (int number = 1; number <= shards; ++number) {
-    const Shard shard{number, shards};
-    const auto at = static_cast<size_t>(number - 1);
-    if (notes[at].skipped.size() < merged.notes.skipped.size()) {
+    const BuildNotes& own = notes[static_cast<size_t>(number - 1)];
+    if (own.skipped.size() < merged.notes.skipped.size()) {
       merged.left_out.push_back(number);
       continue;
     }
-    merged.notes.seen.insert(notes[at].seen.begin(), notes[at].seen.end());
-    int64_t pages = 0;
-    uint32_t digest = 0;
-    Status status = ForEachPage(*stores[at], [&](int layer, Quadcode node, const auto& page, const auto& deviations) {
-      ++pages;
-      digest = DigestWith(digest, layer, node, page, deviations);
-      uncommitted_bytes += static_cast<int64_t>(page.size());
-      Status put = deviations ? into.PutDeviations(layer, node, *deviations) : Status();
-      if (put.ok()) put = into.Put(layer, node, page);
-      if (!put.ok() || uncommitted_bytes < batch_bytes) return put;
-      uncommitted_bytes = 0;
-      return into.Commit();
-    });
-    if (!status.ok()) return status;
-    if (ReadMark(out, shard) != MarkOf(made_of, pages, digest)) {
-      return Status::Error(
-          "{}: its pages are not those of its mark: it is damaged; make it again with --shard {}/{} --fresh",
-          ShardPath(out, shard), number, shards);
-    }
-    merged.pages += pages;
+    merged.notes.seen.insert(own.seen.begin(), own.seen.end());
+    if (Status status = CopyShard(out, {number, shards}, made_of, batch_bytes, into); !status.ok()) return status;
   }
   Status status = into.Note(NotesToJson(merged.notes));
   if (status.ok()) status = into.Commit();

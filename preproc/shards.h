@@ -46,15 +46,15 @@ BuildNotes NotesFromJson(const std::string& text);  // throws where the text is 
 Status MarkWhole(const std::string& out, const Shard& shard, const std::string& made_of, DatasetWriter& store);
 // Before it is worked on again.
 void RemoveMark(const std::string& out, const Shard& shard);
-bool IsWhole(const std::string& out, const Shard& shard, const std::string& made_of);
+// How many pages a shard has that is whole and made of this; nothing where it is not.
+std::optional<int64_t> PagesOfWhole(const std::string& out, const Shard& shard, const std::string& made_of);
 
 struct Merged {
   BuildNotes notes;
-  int64_t pages = 0;
   std::vector<int> left_out;  // shards made with sources that others found to be bad: their pages are made anew
 };
-// Puts the pages of all shards into the writer, and commits them. Fails where one is missing, unfinished, made of
-// something else, or damaged, and says how to make it.
+// Puts the pages of all shards into the writer, one after the other, and commits them. Fails where one is missing,
+// unfinished, made of something else, or damaged, and says how to make it.
 Result<Merged> MergeShards(const std::string& out, int shards, const std::string& made_of, int64_t batch_bytes,
                            DatasetWriter& into);
 void RemoveShards(const std::string& out);

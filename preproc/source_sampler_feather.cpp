@@ -2,6 +2,7 @@
 
 #include "preproc/source_sampler.h"
 #include "runtime/earth/ellipsoid.h"
+#include "runtime/earth/post_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,13 +44,9 @@ PixelSize SourceSampler::PixelSizeAt(double latitude_deg) {
   const PixelPoint here = georeference_->ToPixel(lon, lat);
   const PixelPoint east = georeference_->ToPixel(lon + step, lat);
   const PixelPoint north = georeference_->ToPixel(lon, lat + north_step);
-  // Radii of curvature along the parallel and the meridian.
-  const double sine = std::sin(lat * kRadiansPerDegree);
-  const double flattened = 1 - kEccentricitySquared * sine * sine;
-  const double normal_m = kEquatorialRadius_m / std::sqrt(flattened);
-  const double meridian_m = normal_m * (1 - kEccentricitySquared) / flattened;
-  const double east_m = step * kRadiansPerDegree * normal_m * std::cos(lat * kRadiansPerDegree);
-  const double north_m = north_step * kRadiansPerDegree * meridian_m;
+  const RowGeometry parallel = RowAt(lat);
+  const double east_m = step * kRadiansPerDegree * parallel.prime_vertical_m * parallel.cos_latitude;
+  const double north_m = north_step * kRadiansPerDegree * parallel.meridian_m;
   // Pixels a metre, and the inverse of that matrix.
   const double xe = (east.x - here.x) / east_m, xn = (north.x - here.x) / north_m;
   const double ye = (east.y - here.y) / east_m, yn = (north.y - here.y) / north_m;

@@ -1,15 +1,13 @@
 #include "preproc/spec.h"
 
 #include "preproc/source_path.h"
+#include "preproc/spec_reader.h"
 #include "runtime/base/iso_time.h"
-
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numeric>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -17,40 +15,18 @@
 namespace belvedere {
 namespace {
 
-// Edit distance (Levenshtein).
-size_t Distance(std::string_view a, std::string_view b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 1; i <= a.size(); ++i) {
-    size_t diagonal = std::exchange(row[0], i);
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = std::exchange(row[j], std::min({row[j] + 1, row[j - 1] + 1, replaced}));
-    }
-  }
-  return row[b.size()];
-}
-
-std::string_view TypeName(const toml::node& node) {
-  if (node.is_string()) return "a string";
-  if (node.is_integer() || node.is_floating_point()) return "a number";
-  if (node.is_boolean()) return "true or false";
-  if (node.is_array()) return "an array";
-  return node.is_table() ? "a table" : "a date or time";
-}
-
-class Parser {
+class Parser : private SpecReader {
  public:
-  explicit Parser(const std::string& path) : path_(path) {}
+  explicit Parser(const std::string& path) : SpecReader(path) {}
 
   Result<BuildSpec> Parse(const toml::table& root) {
     if (Status status = CheckKeys(root, {"layer", "type"}); !status.ok()) return status;
-    if (Status status = types_.Add(root, path_); !status.ok()) return status;
+    if (Status status = types_.Add(root, file()); !status.ok()) return status;
     BuildSpec spec;
-    spec.path = path_;
+    spec.path = file();
     const toml::array* layers = root["layer"].as_array();
     if (layers == nullptr || layers->empty()) {
-      return Status::Error("{}: no layer: write [[layer]] with a name, a kind and its sources", path_);
+      return Status::Error("{}: no layer: write [[layer]] with a name, a kind and its sources", file());
     }
     std::set<std::string> names;
     for (const toml::node& node : *layers) {
@@ -65,58 +41,13 @@ class Parser {
       }
     }
     if (spec.layers.size() > static_cast<size_t>(kMaxDatasetLayers)) {
-      return Status::Error("{}: {} layers, each time of a layer counted, at most {} fit a dataset", path_,
+      return Status::Error("{}: {} layers, each time of a layer counted, at most {} fit a dataset", file(),
                            spec.layers.size(), kMaxDatasetLayers);
     }
     return spec;
   }
 
  private:
-  template <typename... Args>
-  Status Error(const toml::node& node, fmt::format_string<Args...> format, Args&&... args) const {
-    return Status::Error("{}:{}: {}", path_, node.source().begin.line,
-                         fmt::format(format, std::forward<Args>(args)...));
-  }
-
-  Status CheckKeys(const toml::table& table, const std::vector<std::string_view>& known) const {
-    for (const auto& [key, value] : table) {
-      const std::string_view name = key.str();
-      if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-      const auto nearest = std::min_element(known.begin(), known.end(), [&](std::string_view a, std::string_view b) {
-        return Distance(name, a) < Distance(name, b);
-      });
-      return Status::Error("{}:{}: unknown key \"{}\"; the nearest known one is \"{}\"", path_, key.source().begin.line,
-                           name, *nearest);
-    }
-    return {};
-  }
-
-  Result<std::string> String(const toml::table& table, std::string_view key) const {
-    const toml::node* node = table.get(key);
-    if (node == nullptr) return Error(table, "\"{}\" is missing", key);
-    const auto value = node->value_exact<std::string>();
-    if (!value) return Error(*node, "\"{}\" must be a string, here it is {}", key, TypeName(*node));
-    return *value;
-  }
-  Result<double> Number(const toml::node& node, std::string_view key) const {
-    if (!node.is_integer() && !node.is_floating_point()) {
-      return Error(node, "\"{}\" must be a number, here it is {}", key, TypeName(node));
-    }
-    return node.value<double>().value_or(0);
-  }
-
-  // None where it is no array.
-  Result<std::vector<double>> Numbers(const toml::node& node, std::string_view key) const {
-    std::vector<double> numbers;
-    const toml::array* array = node.as_array();
-    for (size_t i = 0; array != nullptr && i < array->size(); ++i) {
-      const auto number = Number((*array)[i], key);
-      if (!number.ok()) return number.status();
-      numbers.push_back(*number);
-    }
-    return numbers;
-  }
-
   // A layer, or all its steps.
   Result<std::vector<LayerSpec>> ParseLayer(const toml::node& node, const std::vector<LayerSpec>& before) const {
     const toml::table* table = node.as_table();
@@ -161,8 +92,9 @@ class Parser {
         return Error(*node, "\"{}\" means nothing for {}, which is made of the pages of {}", key, type.name,
                      type.parent);
     }
-    const std::string of = table["of"].value_or(std::string());
-    if (table.contains("of") && of.empty()) return Error(*table.get("of"), "\"of\" must be a layer's name");
+    const auto named = String(table, "of", "");
+    if (!named.ok()) return named.status();
+    const std::string& of = *named;
     for (const LayerSpec& other : before) {
       if (TypeOf(other) != type.parent || other.step || (!of.empty() && other.name != of)) continue;
       layer.derived = {type, other.name};
@@ -222,7 +154,7 @@ class Parser {
     source.written_path = std::move(*written);
     const auto zoom = ParseZoom(*table, source.written_path);
     if (!zoom.ok()) return zoom.status();
-    source.path = ResolveSourcePath(source.written_path, std::filesystem::path(path_).parent_path().string(), *zoom);
+    source.path = ResolveSourcePath(source.written_path, std::filesystem::path(file()).parent_path().string(), *zoom);
     if (Status status = ParseExtent(*table, source); !status.ok()) return status;
     if (const toml::node* nodata = table->get("nodata")) {
       const auto value = Number(*nodata, "nodata");
@@ -282,7 +214,7 @@ class Parser {
     if (node == nullptr) return {};
     if (kind == LayerKind::kElevation) return Error(*node, "\"match_colour\" means nothing for elevation");
     const auto value = node->value_exact<bool>();
-    if (!value) return Error(*node, "\"match_colour\" must be true or false, here it is {}", TypeName(*node));
+    if (!value) return Error(*node, "\"match_colour\" must be true or false, here it is {}", TomlTypeName(*node));
     source.match_colour = *value;
     return {};
   }
@@ -362,11 +294,10 @@ class Parser {
                    "\"datum\" must be \"egm96\", \"ellipsoid\", a number of metres above the ellipsoid, a vertical CRS "
                    "like \"EPSG:3855\" or the file of a geoid grid");
     }
-    source.datum_grid = (std::filesystem::path(path_).parent_path() / *name).string();
+    source.datum_grid = (std::filesystem::path(file()).parent_path() / *name).string();
     return {};
   }
 
-  const std::string& path_;
   DeclaredTypes types_ = DeclaredTypes::Stock();
 };
 
@@ -378,6 +309,10 @@ std::string NameOf(const SourceSpec& source) {
 
 std::string_view TypeOf(const LayerSpec& layer) {
   return layer.derived ? std::string_view(layer.derived->type.name) : LayerKindName(layer.kind);
+}
+
+bool IsMadeOf(const LayerSpec& layer, const LayerSpec& other) {
+  return layer.derived && layer.derived->of == other.name && layer.derived->type.parent == TypeOf(other);
 }
 
 std::vector<LayerSpec> StepsOf(LayerSpec layer, Repeats repeats) {

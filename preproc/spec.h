@@ -69,6 +69,8 @@ struct LayerSpec {
 };
 // The name of its data type.
 std::string_view TypeOf(const LayerSpec& layer);
+// Whether the pages of `layer` are made of those of `other`: it is the layer that it names, and of the parent's type.
+bool IsMadeOf(const LayerSpec& layer, const LayerSpec& other);
 
 // One layer as the spec has it: itself, or its steps, the earliest first.
 std::vector<LayerSpec> StepsOf(LayerSpec layer, Repeats repeats);

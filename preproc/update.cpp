@@ -123,7 +123,7 @@ class Updater {
         layer.Add(std::move(*source));
       }
       layer.PutInOrder();
-      if (layer_spec.derived) layer.parent = ParentOf(spec.layers, layers_.size());
+      layer.parent = ParentOf(layer_spec, layers_).value_or(-1);
       if (layer_spec.derived && layer.parent < 0)
         return Status::Error("layer {}: there is no layer {} before it; the dataset {} is unchanged", layer_spec.name,
                              layer_spec.derived->of, options_.out);
@@ -182,8 +182,8 @@ class Updater {
         return true;
       };
       const DerivedWork work{number, jobs_, options_.batch_bytes, parent_page, is_known};
-      const LayerKind parent = layers_[static_cast<size_t>(layer.parent)].spec.kind;
-      Status status = MakeDerivedLayer(*layer.spec.derived, work, parent, {geoid}, writer);
+      const LayerSpec& parent = layers_[static_cast<size_t>(layer.parent)].spec;
+      Status status = MakeDerivedLayer(layer.spec, parent, work, geoid, writer);
       if (status.ok()) status = RemoveGone(number, unchanged, writer);
       if (!status.ok()) return status;
     }

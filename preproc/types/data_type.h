@@ -14,6 +14,9 @@
 //   classes = [{ name = "flat", colour = "#8fbf6f" }, ...]      # what the bytes mean: classes,
 //   unit = "deg", offset = 0, gain = 0.5, channels = 1          # or numbers
 //
+// What the bytes mean follows from the modules, and what a type says of them must be that: a mistake shows at once, not
+// in the pages.
+//
 // A module runs for many pages at once ("parallel"), unless it says `run = "series"`: then for one at a time.
 //
 // Threads: values; pure functions.
@@ -48,6 +51,7 @@ struct ModuleUse {
   ModuleSettings settings;
 };
 
+// A data type; the run time's DataType is the number of a layer.
 struct DeclaredType {
   std::string name;
   std::string parent;  // empty: made of sources
@@ -69,7 +73,6 @@ class DeclaredTypes {
   // taken, a parent or a module is not known, or modules do not fit each other (process_modules.h).
   Status Add(const toml::table& root, const std::string& file);
   const DeclaredType* Find(std::string_view name) const;
-  const std::vector<DeclaredType>& all() const { return types_; }
 
  private:
   std::vector<DeclaredType> types_;

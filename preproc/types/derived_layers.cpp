@@ -35,15 +35,8 @@ class ParentPages {
 
 }  // namespace
 
-int ParentOf(std::span<const LayerSpec> layers, size_t derived) {
-  for (size_t i = 0; i < derived; ++i) {
-    if (layers[i].name == layers[derived].derived->of) return static_cast<int>(i);
-  }
-  return -1;
-}
-
-Status MakeDerivedLayer(const DerivedSpec& spec, const DerivedWork& work, LayerKind parent,
-                        const ModuleContext& context, DatasetWriter& writer) {
+Status MakeDerivedLayer(const LayerSpec& layer, const LayerSpec& parent, const DerivedWork& work, const Geoid& sea,
+                        DatasetWriter& writer) {
   ParentPages pages(work);
   int64_t uncommitted_bytes = 0;
   const NetworkEnds ends{[&pages] { return pages.Next(); },
@@ -54,11 +47,9 @@ Status MakeDerivedLayer(const DerivedSpec& spec, const DerivedWork& work, LayerK
                            uncommitted_bytes = 0;
                            return writer.Commit();
                          }};
-  const MetaType meta = parent == LayerKind::kElevation ? MetaType::kHeightField
-                        : parent == LayerKind::kImagery ? MetaType::kImage
-                                                        : MetaType::kSurfaceProperty;
+  const ModuleContext context{sea, parent.derived ? parent.derived->type.property : PropertyRecord()};
   Status status;
-  OnWorkers(work.jobs, [&] { status = RunNetwork(spec.type, meta, context, ends); });
+  OnWorkers(work.jobs, [&] { status = RunNetwork(layer.derived->type, context, ends); });
   return status.ok() ? writer.Commit() : status;
 }
 

@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <span>
 #include <vector>
 
 namespace belvedere {
@@ -27,11 +26,8 @@ struct DerivedWork {
   std::function<bool(Quadcode)> is_known;
 };
 
-// The place of the layer that it is made of, which comes before it; -1 where none is.
-int ParentOf(std::span<const LayerSpec> layers, size_t derived);
-
-// REQUIRES: the layer is derived, and its parent is of the type's parent.
-Status MakeDerivedLayer(const DerivedSpec& spec, const DerivedWork& work, LayerKind parent,
-                        const ModuleContext& context, DatasetWriter& writer);
+// REQUIRES: IsMadeOf(layer, parent).
+Status MakeDerivedLayer(const LayerSpec& layer, const LayerSpec& parent, const DerivedWork& work, const Geoid& sea,
+                        DatasetWriter& writer);
 
 }  // namespace belvedere

@@ -39,20 +39,26 @@ std::vector<uint8_t> Encode(MetaType meta, const PageFlow& page) {
 
 class Network {
  public:
-  Network(const DeclaredType& type, MetaType parent, const ModuleContext& context, const NetworkEnds& ends)
-      : type_(type), context_(context), ends_(ends), limit_(graph_, kMostPagesUnderWay) {
+  Network(const DeclaredType& type, const ModuleContext& context, const NetworkEnds& ends)
+      : type_(type), ends_(ends), limit_(graph_, kMostPagesUnderWay) {
     source_ =
         std::make_unique<flow::input_node<Load>>(graph_, [this](tbb::flow_control& control) { return Next(control); });
     flow::make_edge(*source_, limit_);
     flow::sender<Load>* last = &limit_;
-    last = &Join(*last, false, type.read, [parent](Parcel& parcel) { return Decode(parent, parcel); });
-    for (const ModuleUse& use : type.process) {
+    last =
+        &Join(*last, false, type.read, [meta = *PagesOf(type.read)](Parcel& parcel) { return Decode(meta, parcel); });
+    const std::vector<PropertyRecord> meanings = MeaningsAlong(type, context.takes);
+    for (size_t i = 0; i < type.process.size(); ++i) {
+      const ModuleUse& use = type.process[i];
       const ProcessModule& module = *ProcessModules::Stock().Find(use.module);
-      last = &Join(*last, use.in_series, use.module, [this, &use, &module](Parcel& parcel) {
-        return module.process(use.settings, context_, parcel.page);
-      });
+      const ModuleContext takes{context.sea, i == 0 ? context.takes : meanings[i - 1]};
+      last = &Join(*last, use.in_series, use.module,
+                   [&use, &module, takes](Parcel& parcel) { return module.process(use.settings, takes, parcel.page); });
     }
     last = &Join(*last, false, type.write, [this](Parcel& parcel) {
+      if (type_.meta == MetaType::kSurfaceProperty && parcel.page.property->channels != type_.property.channels)
+        return Status::Error("{} channels where the type has {}", parcel.page.property->channels,
+                             type_.property.channels);
       parcel.stored.bytes = Encode(type_.meta, parcel.page);
       return Status();
     });
@@ -107,7 +113,6 @@ class Network {
   }
 
   const DeclaredType& type_;
-  const ModuleContext& context_;
   const NetworkEnds& ends_;
   std::atomic<bool> failed_{false};
   Mutex mutex_;
@@ -121,8 +126,8 @@ class Network {
 
 }  // namespace
 
-Status RunNetwork(const DeclaredType& type, MetaType parent, const ModuleContext& context, const NetworkEnds& ends) {
-  return Network(type, parent, context, ends).Run();
+Status RunNetwork(const DeclaredType& type, const ModuleContext& context, const NetworkEnds& ends) {
+  return Network(type, context, ends).Run();
 }
 
 }  // namespace belvedere

@@ -36,7 +36,7 @@ struct NetworkEnds {
 };
 
 // Sends all pages through. The first failure, with the quadnode and the module in its message, stops the flow.
-// parent: the meta-type of what is read.
-Status RunNetwork(const DeclaredType& type, MetaType parent, const ModuleContext& context, const NetworkEnds& ends);
+// context: its `takes` is what the bytes of the parent's pages mean. REQUIRES: CheckModules is ok of the type.
+Status RunNetwork(const DeclaredType& type, const ModuleContext& context, const NetworkEnds& ends);
 
 }  // namespace belvedere

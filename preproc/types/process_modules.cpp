@@ -3,21 +3,25 @@
 #include "preproc/types/surface_properties.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace belvedere {
 namespace {
 
-double SettingOr(const ModuleSettings& settings, const std::string& key, double value) {
-  const auto found = settings.find(key);
-  return found == settings.end() || found->second.empty() ? value : found->second[0];
+PropertyRecord Numbers(double offset, double gain, int channels = 1) {
+  PropertyRecord record;
+  record.channels = channels;
+  record.offset = offset;
+  record.gain = gain;
+  return record;
 }
 
-Status Classify(const ModuleSettings& settings, const ModuleContext&, PageFlow& flow) {
+Status Classify(const ModuleSettings& settings, const ModuleContext& context, PageFlow& flow) {
   const std::vector<double>& limits = settings.at("limits");
-  const double offset = SettingOr(settings, "offset", 0), gain = SettingOr(settings, "gain", 0.5);
   std::array<uint8_t, 256> classes{};
   for (size_t byte = 0; byte < classes.size(); ++byte) {
-    const double value = offset + gain * static_cast<double>(byte);
+    const double value = context.takes.offset + context.takes.gain * static_cast<double>(byte);
     classes[byte] =
         static_cast<uint8_t>(std::count_if(limits.begin(), limits.end(), [=](double limit) { return value >= limit; }));
   }
@@ -29,15 +33,20 @@ Status Classify(const ModuleSettings& settings, const ModuleContext&, PageFlow& 
 }
 
 template <typename Make>
-ProcessModule OfHeights(const char* name, Make make) {
+ProcessModule OfHeights(const char* name, const PropertyRecord& meaning, Make make) {
   return {name,
           MetaType::kHeightField,
           MetaType::kSurfaceProperty,
           {},
+          [meaning](const PropertyRecord&) { return meaning; },
           [make](const ModuleSettings&, const ModuleContext& context, PageFlow& flow) {
             flow.property = make(*flow.heights, flow.node, context.sea);
             return Status();
           }};
+}
+
+bool IsSame(double a, double b) {
+  return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
 }
 
 }  // namespace
@@ -48,12 +57,18 @@ ProcessModules& ProcessModules::Stock() {
     const auto plain = [](auto make) {
       return [make](const ElevationPage& page, Quadcode node, const Geoid&) { return make(page, node); };
     };
-    for (ProcessModule& module : std::vector<ProcessModule>{
-             OfHeights("slope", plain(SlopeAngles)),
-             OfHeights("normals", plain(NormalMap)),
-             OfHeights("roughness", plain(Roughness)),
-             OfHeights("water", WaterMask),
-             {"classes", MetaType::kSurfaceProperty, MetaType::kSurfaceProperty, {"limits"}, Classify}}) {
+    const PropertyRecord classes = Numbers(0, 1);
+    for (ProcessModule& module :
+         std::vector<ProcessModule>{OfHeights("slope", Numbers(0, 1 / kSlopeSteps_deg), plain(SlopeAngles)),
+                                    OfHeights("normals", Numbers(-1, 2.0 / 255, 3), plain(NormalMap)),
+                                    OfHeights("roughness", Numbers(0, 1 / kRoughnessSteps_m), plain(Roughness)),
+                                    OfHeights("water", classes, WaterMask),
+                                    {"classes",
+                                     MetaType::kSurfaceProperty,
+                                     MetaType::kSurfaceProperty,
+                                     {"limits"},
+                                     [classes](const PropertyRecord&) { return classes; },
+                                     Classify}}) {
       BELVEDERE_CHECK(stock.Add(std::move(module)).ok());
     }
     return stock;
@@ -86,19 +101,28 @@ std::optional<MetaType> PagesOf(std::string_view reader_or_writer) {
   return std::nullopt;
 }
 
-Status CheckModules(const DeclaredType& type, const DeclaredType* parent) {
+std::vector<PropertyRecord> MeaningsAlong(const DeclaredType& type, const PropertyRecord& parent) {
+  std::vector<PropertyRecord> meanings;
+  for (const ModuleUse& use : type.process) {
+    const PropertyRecord& before = meanings.empty() ? parent : meanings.back();
+    const ProcessModule& module = *ProcessModules::Stock().Find(use.module);
+    meanings.push_back(module.meaning ? module.meaning(before) : before);
+  }
+  return meanings;
+}
+
+Status CheckModules(const DeclaredType& type) {
   const auto written = PagesOf(type.write);
   if (!written) return Status::Error("it has no writer \"{}\"", type.write);
-  if (*written != type.meta) return Status::Error("\"{}\" are no {}", type.write, MetaTypeName(type.meta));
-  if (parent == nullptr) {
+  if (*written != type.meta)
+    return Status::Error("\"{}\" are not of meta-type {}", type.write, MetaTypeName(type.meta));
+  if (type.parent.empty()) {
     if (type.read != "raster sources" || !type.process.empty() || type.meta == MetaType::kSurfaceProperty)
       return Status::Error("a type without a parent reads \"raster sources\" and is a height field or an image");
     return {};
   }
   const auto read = PagesOf(type.read);
-  if (!read || *read != parent->meta)
-    return Status::Error("\"{}\" does not read its parent \"{}\", which is a {}", type.read, parent->name,
-                         MetaTypeName(parent->meta));
+  if (!read) return Status::Error("it has no reader \"{}\"", type.read);
   if (type.meta == MetaType::kHeightField) return Status::Error("heights are made of sources alone");
   MetaType flows = *read;
   for (const ModuleUse& use : type.process) {
@@ -106,15 +130,35 @@ Status CheckModules(const DeclaredType& type, const DeclaredType* parent) {
     if (module == nullptr)
       return Status::Error("no module \"{}\"; there are {}", use.module, ProcessModules::Stock().names());
     if (module->takes != flows)
-      return Status::Error("module \"{}\" takes a {}, and gets a {}", use.module, MetaTypeName(module->takes),
+      return Status::Error("module \"{}\" takes {}, and gets {}", use.module, MetaTypeName(module->takes),
                            MetaTypeName(flows));
     for (const std::string& key : module->settings) {
       if (!use.settings.contains(key)) return Status::Error("module \"{}\" needs \"{}\"", use.module, key);
     }
+    for (const auto& [key, numbers] : use.settings) {
+      if (std::find(module->settings.begin(), module->settings.end(), key) == module->settings.end())
+        return Status::Error("module \"{}\" has no setting \"{}\"", use.module, key);
+    }
     flows = module->gives;
   }
   if (flows == type.meta) return {};
-  return Status::Error("\"{}\" gets a {}", type.write, MetaTypeName(flows));
+  return Status::Error("\"{}\" gets {}", type.write, MetaTypeName(flows));
+}
+
+Status CheckParent(const DeclaredType& type, const DeclaredType& parent) {
+  if (*PagesOf(type.read) != parent.meta)
+    return Status::Error("\"{}\" does not read its parent \"{}\", of meta-type {}", type.read, parent.name,
+                         MetaTypeName(parent.meta));
+  if (type.meta != MetaType::kSurfaceProperty) return {};
+  const std::vector<PropertyRecord> meanings = MeaningsAlong(type, parent.property);
+  const PropertyRecord& given = meanings.empty() ? parent.property : meanings.back();
+  if (given.channels != type.property.channels)
+    return Status::Error("it is said to have {} channels, and its modules give {}", type.property.channels,
+                         given.channels);
+  const bool is_alike = IsSame(given.offset, type.property.offset) && IsSame(given.gain, type.property.gain);
+  if (!type.property.classes.empty() || is_alike) return {};
+  return Status::Error("a byte is said to be {} + {} * byte, and its modules give {} + {} * byte", type.property.offset,
+                       type.property.gain, given.offset, given.gain);
 }
 
 }  // namespace belvedere

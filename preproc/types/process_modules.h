@@ -7,7 +7,7 @@
 //     for (uint8_t& value : flow.property->values) value /= 2;
 //     return {};
 //   }
-//   ProcessModules::Stock().Add({"halve", MetaType::kSurfaceProperty, MetaType::kSurfaceProperty, {}, Halve});
+//   ProcessModules::Stock().Add({"halve", MetaType::kSurfaceProperty, MetaType::kSurfaceProperty, {}, {}, Halve});
 //
 // and a type that names "halve" in its `process` uses it. A function sees one page alone, whose apron holds the posts
 // of the neighbours: what it makes of a post must depend on those around it and on nothing else, so that neighbours
@@ -40,19 +40,24 @@ struct PageFlow {
 
 struct ModuleContext {
   const Geoid& sea;
+  // What the bytes of the property that it takes mean: numbers. Of other pages, nothing.
+  PropertyRecord takes{};
 };
 
 struct ProcessModule {
   std::string name;
   MetaType takes = MetaType::kHeightField, gives = MetaType::kSurfaceProperty;
   std::vector<std::string> settings;  // the keys that it must be given
+  // What the bytes of the property that it gives mean, of what those mean that it takes; its classes are the type's to
+  // name. Where there is none they mean the same.
+  std::function<PropertyRecord(const PropertyRecord& takes)> meaning;
   std::function<Status(const ModuleSettings&, const ModuleContext&, PageFlow&)> process;
 };
 
 class ProcessModules {
  public:
   // "slope", "normals", "roughness", "water": of heights (surface_properties.h). "classes": of a property's first
-  // channel, the number of `limits`, ascending, in its unit by `offset` and `gain`, that its value reaches.
+  // channel, how many of the `limits`, in its own unit, its value reaches.
   static ProcessModules& Stock();
 
   Status Add(ProcessModule module);  // fails where the name is taken
@@ -66,7 +71,12 @@ class ProcessModules {
 // "height pages", "image pages", "property pages": what reads and writes pages of a meta-type. Nothing of another name.
 std::optional<MetaType> PagesOf(std::string_view reader_or_writer);
 
-// Why the modules of a type do not fit each other; ok where they do. parent: null where there is none.
-Status CheckModules(const DeclaredType& type, const DeclaredType* parent);
+// What the bytes mean after each module of the type, where `parent` is what they mean before the first.
+std::vector<PropertyRecord> MeaningsAlong(const DeclaredType& type, const PropertyRecord& parent);
+
+// Why the modules of a type do not fit each other; ok where they do.
+Status CheckModules(const DeclaredType& type);
+// And why they do not fit its parent, or what it says of its bytes. REQUIRES: CheckModules is ok.
+Status CheckParent(const DeclaredType& type, const DeclaredType& parent);
 
 }  // namespace belvedere

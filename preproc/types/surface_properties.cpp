@@ -1,6 +1,7 @@
 #include "preproc/types/surface_properties.h"
 
-#include "runtime/earth/ellipsoid.h"
+#include "runtime/earth/post_grid.h"
+#include "runtime/earth/units.h"
 
 #include <algorithm>
 #include <array>
@@ -33,14 +34,12 @@ struct Surroundings {
   }
 };
 
-// Radii of curvature (Torge and Mueller, Geodesy): of the meridian, and across it.
 void MeasureSpacing(Surroundings& around, double step_deg) {
-  const double phi = around.latitude_deg * kRadiansPerDegree;
-  const double w2 = 1 - kEccentricitySquared * std::sin(phi) * std::sin(phi);
-  const double across_m = kEquatorialRadius_m / std::sqrt(w2);
+  const RowGeometry parallel = RowAt(around.latitude_deg);
   const double step = step_deg * kRadiansPerDegree;
-  around.north_m = across_m * (1 - kEccentricitySquared) / w2 * step;
-  around.east_m = std::max(across_m * std::cos(phi) * step, 0.01 * around.north_m);  // at a pole posts fall together
+  around.north_m = parallel.meridian_m * step;
+  // At a pole posts fall together.
+  around.east_m = std::max(parallel.prime_vertical_m * parallel.cos_latitude * step, 0.01 * around.north_m);
 }
 
 // value: from what is around a post to a byte for each channel.
@@ -75,7 +74,7 @@ std::shared_ptr<PropertyPage> Make(const ElevationPage& page, Quadcode node, Val
 std::shared_ptr<PropertyPage> SlopeAngles(const ElevationPage& page, Quadcode node) {
   return Make<1>(page, node, [](const Surroundings& around) {
     const double angle_deg = std::atan(std::hypot(around.SlopeEast(), around.SlopeNorth())) / kRadiansPerDegree;
-    return std::array{Byte(2 * angle_deg)};
+    return std::array{Byte(kSlopeSteps_deg * angle_deg)};
   });
 }
 
@@ -99,7 +98,7 @@ std::shared_ptr<PropertyPage> Roughness(const ElevationPage& page, Quadcode node
       const double off_m = around.heights_m[static_cast<size_t>(i)] - plane_m;
       squares += off_m * off_m;
     }
-    return std::array{Byte(4 * std::sqrt(squares / 9))};
+    return std::array{Byte(kRoughnessSteps_m * std::sqrt(squares / 9))};
   });
 }
 

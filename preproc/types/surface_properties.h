@@ -4,7 +4,7 @@
 // values of the ring within. Distances are those of the ellipsoid. Where a property does not fit its byte it has the
 // nearest that does.
 //
-// Threads: pure functions.
+// Units: metres; slopes are rise over run. Threads: pure functions.
 #pragma once
 
 #include "runtime/earth/geoid.h"
@@ -13,6 +13,9 @@
 #include <memory>
 
 namespace belvedere {
+
+inline constexpr double kSlopeSteps_deg = 2;    // a degree
+inline constexpr double kRoughnessSteps_m = 4;  // a metre
 
 // Steepness, half a degree a step. Level ground is 0, a wall 180.
 std::shared_ptr<PropertyPage> SlopeAngles(const ElevationPage& page, Quadcode node);

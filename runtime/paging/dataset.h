@@ -59,7 +59,7 @@ struct PropertyClass {
   std::array<uint8_t, 4> colour{};  // sRGB and alpha, by which it is shown
 };
 struct PropertyRecord {
-  int channels = 1;
+  int channels = 1;                    // 1 to kMostPropertyChannels
   std::vector<PropertyClass> classes;  // none: numbers
   double offset = 0, gain = 1;
   std::string unit;  // of numbers; may be empty

@@ -67,30 +67,6 @@ SourceRecord SourceFromJson(const json& in) {
   return source;
 }
 
-json PropertyToJson(const PropertyRecord& property) {
-  json out = {{"channels", property.channels}};
-  for (const PropertyClass& one : property.classes)
-    out["classes"].push_back({{"name", one.name}, {"colour", one.colour}});
-  if (!property.classes.empty()) return out;
-  out["offset"] = property.offset;
-  out["gain"] = property.gain;
-  out["unit"] = property.unit;
-  return out;
-}
-
-PropertyRecord PropertyFromJson(const json& in) {
-  PropertyRecord property;
-  property.channels = in.at("channels").get<int>();
-  if (in.contains("classes")) {
-    for (const json& one : in.at("classes"))
-      property.classes.push_back({one.at("name").get<std::string>(), one.at("colour").get<std::array<uint8_t, 4>>()});
-  }
-  property.offset = in.value("offset", 0.0);
-  property.gain = in.value("gain", 1.0);
-  property.unit = in.value("unit", std::string());
-  return property;
-}
-
 json LayerToJson(const LayerRecord& layer) {
   json sources = json::array();
   for (const auto& source : layer.sources) sources.push_back(SourceToJson(source));
@@ -105,7 +81,7 @@ json LayerToJson(const LayerRecord& layer) {
   if (layer.step) out["step_of"] = StepToJson(*layer.step);
   if (layer.rules != 0) out["rules"] = layer.rules;
   if (layer.finest_last) out["priority"] = "resolution";
-  if (layer.property) out["property"] = PropertyToJson(*layer.property);
+  if (layer.property) out["property"] = json::parse(PropertyToJson(*layer.property));
   if (layer.derivation) {
     out["made_of"] = {{"type", layer.derivation->type}, {"layer", layer.derivation->of}};
     if (!layer.derivation->definition.empty()) out["made_of"]["definition"] = json::parse(layer.derivation->definition);
@@ -130,7 +106,7 @@ LayerRecord LayerFromJson(const json& in) {
   if (in.contains("step_of") && layer.kind == LayerKind::kImagery) layer.step = StepFromJson(in.at("step_of"));
   layer.rules = in.value("rules", 0);
   layer.finest_last = in.value("priority", std::string()) == "resolution";
-  if (layer.kind == LayerKind::kProperty) layer.property = PropertyFromJson(in.at("property"));
+  if (layer.kind == LayerKind::kProperty) layer.property = PropertyFromJson(in.at("property").dump());
   if (in.contains("made_of")) {
     const json& made = in.at("made_of");
     layer.derivation = {made.at("type").get<std::string>(), made.at("layer").get<std::string>(),
@@ -140,6 +116,33 @@ LayerRecord LayerFromJson(const json& in) {
 }
 
 }  // namespace
+
+std::string PropertyToJson(const PropertyRecord& property) {
+  json out = {{"channels", property.channels}};
+  for (const PropertyClass& one : property.classes)
+    out["classes"].push_back({{"name", one.name}, {"colour", one.colour}});
+  if (!property.classes.empty()) return out.dump();
+  out["offset"] = property.offset;
+  out["gain"] = property.gain;
+  out["unit"] = property.unit;
+  return out.dump();
+}
+
+PropertyRecord PropertyFromJson(std::string_view text) {
+  const json in = json::parse(text);
+  PropertyRecord property;
+  property.channels = in.at("channels").get<int>();
+  if (property.channels < 1 || property.channels > kMostPropertyChannels)
+    throw json::other_error::create(501, "a property of " + std::to_string(property.channels) + " channels", nullptr);
+  if (in.contains("classes")) {
+    for (const json& one : in.at("classes"))
+      property.classes.push_back({one.at("name").get<std::string>(), one.at("colour").get<std::array<uint8_t, 4>>()});
+  }
+  property.offset = in.value("offset", 0.0);
+  property.gain = in.value("gain", 1.0);
+  property.unit = in.value("unit", std::string());
+  return property;
+}
 
 std::string ToJson(const Metadata& metadata) {
   json layers = json::array();

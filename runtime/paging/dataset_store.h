@@ -59,6 +59,10 @@ struct Metadata {
   std::string over{};  // of a change: id of the store under it
 };
 
+// An object, and back. FromJson throws where it is damaged.
+std::string PropertyToJson(const PropertyRecord& property);
+PropertyRecord PropertyFromJson(std::string_view text);
+
 std::string ToJson(const Metadata& metadata);
 // The reason alone; refuses another version by its number.
 Result<Metadata> FromJson(std::string_view text);

@@ -119,8 +119,9 @@ inline constexpr int kBisections = 2 * kCellsLog2;  // levels of bisection from 
 
 // A property of the ground, one or more bytes at each post of an elevation page: classes, or numbers in even steps, as
 // the layer's record says (PropertyRecord in dataset.h).
+inline constexpr int kMostPropertyChannels = 4;
 struct PropertyPage final : Page {
-  int channels = 1;
+  int channels = 1;             // 1 to kMostPropertyChannels
   std::vector<uint8_t> values;  // channel after channel, each kElevationSide^2, row by row from the south-west
 
   // Post (column, row), each -kApron .. kPosts - 1 + kApron.

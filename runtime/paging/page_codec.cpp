@@ -18,7 +18,6 @@ constexpr uint16_t kFlagDeltas = 2;
 constexpr int kElevationZstdLevel = 3;
 constexpr int kImageZstdLevel = 1;
 constexpr int kPropertyZstdLevel = 3;
-constexpr int kMostChannels = 4;
 constexpr size_t kHeights = static_cast<size_t>(kElevationSide) * static_cast<size_t>(kElevationSide);
 constexpr size_t kElevationNumbers = 3 + ErrorBlocks{}.size();
 constexpr size_t kElevationRawBytes = kElevationNumbers * sizeof(float) + 4 * kHeights;
@@ -217,7 +216,7 @@ Result<std::shared_ptr<ImagePage>> DecodeImage(std::span<const uint8_t> bytes) {
 }
 
 std::vector<uint8_t> EncodeProperty(const PropertyPage& page) {
-  BELVEDERE_CHECK(page.channels >= 1 && page.channels <= kMostChannels);
+  BELVEDERE_CHECK(page.channels >= 1 && page.channels <= kMostPropertyChannels);
   BELVEDERE_CHECK(page.values.size() == static_cast<size_t>(page.channels) * kHeights);
   std::vector<uint8_t> raw(page.values.size());
   uint8_t before = 0;
@@ -229,7 +228,7 @@ std::vector<uint8_t> EncodeProperty(const PropertyPage& page) {
 Result<std::shared_ptr<PropertyPage>> DecodeProperty(std::span<const uint8_t> bytes) {
   if (Status status = CheckPageHeader(bytes, kKindProperty); !status.ok()) return status;
   const int channels = bytes[6] | bytes[7] << 8;
-  if (channels < 1 || channels > kMostChannels) return Status::Error("a property of {} channels", channels);
+  if (channels < 1 || channels > kMostPropertyChannels) return Status::Error("a property of {} channels", channels);
   const auto raw = UnwrapPage(bytes, static_cast<size_t>(channels) * kHeights);
   if (!raw.ok()) return raw.status();
   auto page = std::make_shared<PropertyPage>();

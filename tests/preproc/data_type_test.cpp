@@ -2,6 +2,7 @@
 
 #include "preproc/spec.h"
 #include "preproc/types/process_modules.h"
+#include "tests/preproc/declared_types.h"
 
 #include <gtest/gtest.h>
 
@@ -65,18 +66,10 @@ TEST(DataType, StockTypesAreInTheSameLanguage) {
 }
 
 TEST(DataType, ATypeMayBeTheParentOfAnother) {
-  const std::string child = R"([[type]]
-name = "steep"
-parent = "slope angle"
-meta = "surface property"
-read = "property pages"
-process = [{ module = "classes", limits = 30 }]
-write = "property pages"
-classes = [{ name = "no", colour = "#00000000" }, { name = "yes", colour = "#ff0000" }]
-)";
-  const auto spec = ParseSpec(child + kElevation + "[[layer]]\nname = \"angles\"\nkind = \"slope angle\"\n" +
-                                  Derived("steep", "of = \"angles\""),
-                              "dir/earth.toml");
+  const auto spec =
+      ParseSpec(std::string(testing_types::kSteepType) + kElevation +
+                    "[[layer]]\nname = \"angles\"\nkind = \"slope angle\"\n" + Derived("steep", "of = \"angles\""),
+                "dir/earth.toml");
   ASSERT_TRUE(spec.ok()) << spec.message();
   EXPECT_EQ(spec->layers[2].derived->of, "angles");
 }
@@ -90,15 +83,22 @@ TEST(DataType, WhatIsWrongIsNamedWithItsLine) {
       {Without(type, "\"elevation\"", "\"elevatoin\""), "to be its parent"},
       {Without(type, "\"slope\"", "\"slop\""), "no module \"slop\"; there are \"slope\""},
       {Without(type, "limits = [5, 15.5], "), "needs \"limits\""},
-      {Without(type, "[5, 15.5]", "[5, \"x\"]"), "must be a number"},
+      {Without(type, "[5, 15.5]", "[5, \"x\"]"), "must be a number, here it is a string"},
       {Without(type, "run = \"series\"", "run = \"serial\""), "\"parallel\" or \"series\""},
-      {Without(type, "\"slope\", "), "takes a surface property, and gets a height field"},
-      {Without(type, "\"height pages\"", "\"image pages\""), "does not read its parent"},
-      {Without(type, "\"property pages\"", "\"image pages\""), "are no surface property"},
+      {Without(type, "\"slope\", "), "takes surface property, and gets height field"},
+      {Without(Without(type, "\"height pages\"", "\"property pages\""), "\"slope\", "), "does not read its parent"},
+      {Without(type, "\"property pages\"", "\"image pages\""), "are not of meta-type surface property"},
       {Without(type, "\"surface property\"", "\"surface\""), "\"meta\" must be"},
       {Without(type, "#8fbf6f", "#8fbf6"), "a class has"},
       {Without(type, "name = \"slope classes\"", "name = \"elevation\""), "there already"},
-      {Without(type, "write =", "writes ="), "no key \"writes\""},
+      {Without(type, "write =", "writes ="), "unknown key \"writes\"; the nearest known one is \"write\""},
+      {Without(type, "parent =", "channels = 2\nparent ="), "2 channels, and its modules give 1"},
+      {Without(type, "parent =", "channels = 1.5\nparent ="), "must be 1 to 4"},
+      {Without(type, "parent =", "gain = \"x\"\nparent ="), "\"gain\" must be a number, here it is a string"},
+      {Without(type, "parent =", "unit = 3\nparent ="), "\"unit\" must be a string, here it is a number"},
+      {Without(type, "limits = [5, 15.5]", "limits = 5, limit = 3"), "no setting \"limit\""},
+      {Without(type.substr(0, type.find("classes =")), "process", "gain = 0.5\nprocess"),
+       "0 + 0.5 * byte, and its modules give 0 + 1 * byte"},
       {"type = 3\n", "[[type]]"},
       {type + kElevation + Derived("slope clases"), "there is no \"slope clases\""},
       {type + Derived("slope classes"), "none stands before it"},
@@ -121,7 +121,7 @@ TEST(DataType, ADatasetKeepsAllOfIt) {
   EXPECT_EQ(TypeToJson(*read), TypeToJson(type));
   EXPECT_EQ(read->process[1].settings.at("limits"), (std::vector<double>{5, 15.5}));
   EXPECT_FALSE(TypeFromJson("{}").ok());
-  EXPECT_NE(TypeFromJson(Without(TypeToJson(type), "\"slope\"", "\"other\"")).message().find("needs the module"),
+  EXPECT_NE(TypeFromJson(Without(TypeToJson(type), "\"slope\"", "\"other\"")).message().find("no module \"other\""),
             std::string::npos);
 }
 

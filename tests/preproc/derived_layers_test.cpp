@@ -2,23 +2,17 @@
 
 #include "preproc/types/surface_properties.h"
 #include "tests/preproc/changed_dataset.h"
+#include "tests/preproc/declared_types.h"
 
 #include <fstream>
+#include <set>
 
 namespace belvedere {
 namespace {
 
 using namespace testing_rasters;
+using testing_types::kSteepType;
 
-const char* const kTypes = R"([[type]]
-name = "steep"
-parent = "slope angle"
-meta = "surface property"
-read = "property pages"
-process = [{ module = "classes", limits = 20 }]
-write = "property pages"
-classes = [{ name = "no", colour = "#00000000" }, { name = "yes", colour = "#ff0000" }]
-)";
 const char* const kAngles = "[[layer]]\nname = \"angles\"\nkind = \"slope angle\"\n";
 const char* const kSteep = "[[layer]]\nname = \"steep\"\nkind = \"steep\"\nof = \"angles\"\n";
 
@@ -36,7 +30,7 @@ std::string Heights(const std::vector<std::string>& names) {
 
 TEST(DerivedLayers, HaveAPageForEachOfTheOthers) {
   const std::string folder = Prepare("derived_pages");
-  MustBuild(folder, kTypes + Heights({"world.tif", "inset.tif"}) + kAngles + kSteep);
+  MustBuild(folder, kSteepType + Heights({"world.tif", "inset.tif"}) + kAngles + kSteep);
   const auto dataset = MustOpen(folder);
   ASSERT_EQ(dataset->layers().size(), 3U);
   EXPECT_EQ(dataset->layers()[1].kind, LayerKind::kProperty);
@@ -65,12 +59,12 @@ TEST(DerivedLayers, HaveAPageForEachOfTheOthers) {
 TEST(DerivedLayers, FollowChangesOfWhatTheyAreMadeOf) {
   const std::string folder = Prepare("derived_changes");
   const std::string more = std::string(kAngles) + kSteep;
-  MustBuild(folder, kTypes + Heights({"world.tif"}) + more);
+  MustBuild(folder, kSteepType + Heights({"world.tif"}) + more);
   const Pages before = PagesOf(folder);
   const auto added = Add(folder, Heights({"inset.tif"}));
   ASSERT_TRUE(added.ok()) << added.message();
   const Pages after = PagesOf(folder);
-  ExpectSame(after, BuiltWhole("derived_whole", folder, kTypes + Heights({"world.tif", "inset.tif"}) + more));
+  ExpectSame(after, BuiltWhole("derived_whole", folder, kSteepType + Heights({"world.tif", "inset.tif"}) + more));
   EXPECT_EQ(added->written, CountNew(before, after)) << "only what differs is written";
   ASSERT_TRUE(Remove(folder, "inset.tif").ok());
   ExpectSame(PagesOf(folder), before);
@@ -81,13 +75,43 @@ TEST(DerivedLayers, ComeToADatasetThatIsThere) {
   MustBuild(folder, Heights({"world.tif", "inset.tif"}));
   const auto added = Add(folder, "[[layer]]\nname = \"angles\"\nkind = \"slope angle\"\nof = \"elevation\"\n");
   ASSERT_TRUE(added.ok()) << added.message();
-  ASSERT_TRUE(Add(folder, std::string(kTypes) + kSteep).ok());
+  ASSERT_TRUE(Add(folder, std::string(kSteepType) + kSteep).ok());
   ExpectSame(PagesOf(folder),
-             BuiltWhole("derived_whole", folder, kTypes + Heights({"world.tif", "inset.tif"}) + kAngles + kSteep));
-  EXPECT_NE(Add(folder, std::string(kTypes) + kSteep).message().find("there already"), std::string::npos);
+             BuiltWhole("derived_whole", folder, kSteepType + Heights({"world.tif", "inset.tif"}) + kAngles + kSteep));
+  EXPECT_NE(Add(folder, std::string(kSteepType) + kSteep).message().find("there already"), std::string::npos);
   EXPECT_NE(
       Add(folder, "[[layer]]\nname = \"x\"\nkind = \"roughness\"\nof = \"none\"\n").message().find("no layer none"),
       std::string::npos);
+}
+
+// A byte of roughness is a quarter of a metre, one of slope half a degree: limits are in the unit of what is classed.
+TEST(DerivedLayers, ClassesTakeTheUnitOfTheirParent) {
+  const std::string folder = Prepare("derived_units");
+  const std::string rough = R"([[type]]
+name = "rough"
+parent = "roughness"
+meta = "surface property"
+read = "property pages"
+process = [{ module = "classes", limits = [2.5, 30] }]
+write = "property pages"
+classes = [{ name = "a", colour = "#000000" }, { name = "b", colour = "#808080" }, { name = "c", colour = "#ffffff" }]
+)";
+  MustBuild(folder, rough + Heights({"inset.tif"}) +
+                        "[[layer]]\nname = \"r\"\nkind = \"roughness\"\n[[layer]]\nname = \"c\"\nkind = \"rough\"\n");
+  const auto dataset = MustOpen(folder);
+  std::set<int> seen;
+  for (const uint64_t word : dataset->Nodes(1)) {
+    const Quadcode node = *Quadcode::FromWord(word);
+    const auto metres = dataset->ReadProperty(1, node);
+    const auto classes = dataset->ReadProperty(2, node);
+    ASSERT_TRUE(metres.ok() && classes.ok());
+    for (size_t i = 0; i < (*metres)->values.size(); ++i) {
+      const double value_m = (*metres)->values[i] / 4.0;
+      ASSERT_EQ((*classes)->values[i], (value_m >= 2.5) + (value_m >= 30));
+      seen.insert((*classes)->values[i]);
+    }
+  }
+  EXPECT_EQ(seen.size(), 3U);
 }
 
 TEST(DerivedLayers, AreLeftOutWithWhatTheyAreMadeOf) {

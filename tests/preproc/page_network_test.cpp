@@ -60,6 +60,7 @@ void AddOnce(const char* name, std::function<Status(PageFlow&)> work) {
                 MetaType::kSurfaceProperty,
                 MetaType::kSurfaceProperty,
                 {},
+                {},
                 [work](const ModuleSettings&, const ModuleContext&, PageFlow& flow) { return work(flow); }})
           .ok());
 }
@@ -73,7 +74,7 @@ class PageNetwork : public testing::Test {
   }
   Status Run(const DeclaredType& type, const NetworkEnds& ends, int jobs = 4) {
     Status status;
-    OnWorkers(jobs, [&] { status = RunNetwork(type, MetaType::kSurfaceProperty, {*sea_}, ends); });
+    OnWorkers(jobs, [&] { status = RunNetwork(type, {*sea_}, ends); });
     return status;
   }
   std::shared_ptr<const Geoid> sea_;
@@ -129,6 +130,15 @@ TEST_F(PageNetwork, AFailureStopsTheFlowAndIsNamed) {
   for (const char* part : {"\"tried\"", "fails at 40", "it is forty", "quadnode"})
     EXPECT_NE(status.message().find(part), std::string::npos) << status.message();
   EXPECT_LT(fetched, kPages);
+}
+
+TEST_F(PageNetwork, PagesOfOtherChannelsThanTheTypesAreAFailure) {
+  DeclaredType type = TypeWith({});
+  type.property.channels = 3;
+  std::map<uint64_t, uint8_t> out;
+  int fetched = 0;
+  EXPECT_NE(Run(type, Ends(out, fetched)).message().find("1 channels where the type has 3"), std::string::npos);
+  EXPECT_TRUE(out.empty());
 }
 
 TEST_F(PageNetwork, ADamagedPageIsAFailure) {
