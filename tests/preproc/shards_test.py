@@ -71,9 +71,9 @@ class Test:
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        noise(folder / "world.tif", 512, 256, (-180, 360 / 512, 0, 90, 0, -360 / 512), 1, 1, 40)
+        noise(folder / "world.tif", 256, 128, (-180, 360 / 256, 0, 90, 0, -360 / 256), 1, 1, 40)
         noise(folder / "inset.tif", 300, 200, (10, 0.01, 0, 50, 0, -0.01), 1, 2, 3000)
-        noise(folder / "colours.tif", 2048, 1024, (-180, 360 / 2048, 0, 90, 0, -360 / 2048), 3, 3, 256)
+        noise(folder / "colours.tif", 1024, 512, (-180, 360 / 1024, 0, 90, 0, -360 / 1024), 3, 3, 256)
         layers = """[[layer]]
 name = "elevation"
 kind = "elevation"

@@ -1,0 +1,1 @@
+// One file that is compiled makes what is precompiled.
