@@ -6,6 +6,7 @@
 #include "preproc/resumed_pages.h"
 #include "preproc/source_settings.h"
 #include "preproc/types/derived_layers.h"
+#include "preproc/vectors/vector_layer.h"
 #include "runtime/base/iso_time.h"
 #include "runtime/base/log.h"
 #include "runtime/earth/geoid.h"
@@ -70,7 +71,8 @@ class Builder {
       report_.opening_s += opened_s - round_s;
       report_.pages_s += made_s - opened_s;
       if (excluded_.size() > left_out) continue;
-      Status status = options_.shard ? FinishShard(**writer) : MakeDerived(**geoid, **writer);
+      Status status = options_.shard ? FinishShard(**writer) : MakeVectors(**writer);
+      if (status.ok() && !options_.shard) status = MakeDerived(**geoid, **writer);
       if (status.ok() && !options_.shard) status = Finish(**geoid, **writer);
       if (!status.ok()) return status;
       if (options_.merge > 0) RemoveShards(options_.out);
@@ -105,6 +107,7 @@ class Builder {
     for (const OpenLayer& layer : layers_) {
       text += layer.spec.name + "\n";
       for (const auto& source : layer.sources) text += source->state();
+      for (const FeatureSource& source : layer.features) text += source.Record().state;
     }
     return text;
   }
@@ -185,6 +188,7 @@ class Builder {
 
   // A step that has lost all sources of its own time is none.
   static bool IsWorthBuilding(const OpenLayer& layer) {
+    if (layer.spec.kind == LayerKind::kVector) return !layer.features.empty();
     return std::any_of(layer.sources.begin(), layer.sources.end(),
                        [&](const auto& source) { return !layer.spec.step || source->spec().utc_s; });
   }
@@ -196,6 +200,14 @@ class Builder {
       layer.spec = layer_spec;
       for (const SourceSpec& source_spec : layer_spec.sources) {
         if (excluded_.contains(KeyOf(layer_spec, source_spec))) continue;
+        if (source_spec.features) {
+          auto features = FeatureSource::Read(source_spec);
+          if (features.ok())
+            layer.features.push_back(std::move(*features));
+          else
+            Exclude(layer_spec, source_spec, features.message());
+          continue;
+        }
         auto source = RasterSource::Open(source_spec, layer_spec.kind, number++, jobs_, cache);
         if (!source.ok()) {
           Exclude(layer_spec, source_spec, source.message());
@@ -224,6 +236,19 @@ class Builder {
     return false;
   }
 
+  Status MakeVectors(DatasetWriter& writer) {
+    FeatureIndexMaker index(writer);
+    for (size_t i = 0; i < layers_.size(); ++i) {
+      if (layers_[i].features.empty()) continue;
+      const std::vector<Feature> features = FeaturesOf(layers_[i].features);
+      LogInfo("layer {}: {} features", layers_[i].spec.name, features.size());
+      Status status = MakeVectorLayer(static_cast<int>(i), features, options_.batch_bytes, writer);
+      if (status.ok()) status = index.Add(layers_[i].spec.name, features);
+      if (!status.ok()) return status;
+    }
+    return index.Finish();
+  }
+
   // Of the last round alone, which has all that they are made of.
   Status MakeDerived(const Geoid& geoid, DatasetWriter& writer) {
     for (size_t i = 0; i < layers_.size(); ++i) {
@@ -244,7 +269,7 @@ class Builder {
   std::vector<Unit> UnitsOfShard() const {
     std::vector<Unit> all, own;
     for (size_t i = 0; i < layers_.size(); ++i) {
-      if (layers_[i].spec.derived) continue;  // made when shards are merged
+      if (!IsOfRasters(layers_[i].spec)) continue;  // made when shards are merged
       const std::vector<Unit> units = UnitsOf(static_cast<int>(i), layers_[i].plan);
       all.insert(all.end(), units.begin(), units.end());
     }
@@ -259,7 +284,8 @@ class Builder {
     int64_t planned = 0;
     const std::vector<Unit> units = options_.shard ? UnitsOfShard() : std::vector<Unit>();
     for (const Unit& unit : units) planned += unit.pages;
-    for (const OpenLayer& layer : layers_) planned += layer.spec.derived || options_.shard ? 0 : CountNodes(layer.plan);
+    for (const OpenLayer& layer : layers_)
+      planned += !IsOfRasters(layer.spec) || options_.shard ? 0 : CountNodes(layer.plan);
     ResumedPages resumed(writer, static_cast<int>(layers_.size()));
     report_.resumed = resumed.pages();
     if (report_.resumed > 0)
@@ -270,7 +296,7 @@ class Builder {
       progress.emplace(planned, clock_, [&sink] { return Progress::Written{sink.pages(), sink.bytes()}; });
     std::vector<std::unique_ptr<LayerBuilder>> builders;
     for (size_t i = 0; i < layers_.size(); ++i) {
-      if (layers_[i].spec.derived) continue;
+      if (!IsOfRasters(layers_[i].spec)) continue;
       builders.push_back(std::make_unique<LayerBuilder>(static_cast<int>(i), layers_[i], geoid, sink, &resumed,
                                                         progress ? &*progress : nullptr));
     }
@@ -312,12 +338,15 @@ class Builder {
     for (const OpenLayer& layer : layers_) {
       for (size_t i = 0; i < layer.sources.size(); ++i) {
         report_.bytes_read += layer.sources[i]->bytes_read();
-        if (!layer.sources[i]->remark().empty()) Warn(*layer.sources[i], layer.sources[i]->remark());
+        if (!layer.sources[i]->remark().empty()) Warn(layer.sources[i]->spec(), layer.sources[i]->remark());
         if (!seen.contains(KeyOf(layer.spec, layer.sources[i]->spec()))) {
-          Warn(*layer.sources[i], "nothing of it is seen: later sources cover it all");
+          Warn(layer.sources[i]->spec(), "nothing of it is seen: later sources cover it all");
         }
       }
-      for (const Unmatched& unmatched : layer.unmatched) Warn(*unmatched.source, unmatched.reason);
+      for (const Unmatched& unmatched : layer.unmatched) Warn(unmatched.source->spec(), unmatched.reason);
+      for (const FeatureSource& source : layer.features) {
+        if (!source.remark().empty()) Warn(source.spec(), source.remark());
+      }
       records.push_back(layer.Record(geoid));
     }
     const std::string now = FormatIsoTime(std::floor(clock_.UtcSeconds()));
@@ -330,13 +359,13 @@ class Builder {
     return {};
   }
 
-  void Warn(const RasterSource& source, const std::string& reason) {
+  void Warn(const SourceSpec& source, const std::string& reason) {
     const bool said = std::any_of(report_.warnings.begin(), report_.warnings.end(), [&](const SourceRemark& remark) {
-      return remark.source == NameOf(source.spec()) && remark.reason == reason;
+      return remark.source == NameOf(source) && remark.reason == reason;
     });
     if (said) return;  // of another step
-    report_.warnings.push_back({NameOf(source.spec()), reason});
-    LogWarning("{}: {}", source.spec().path, reason);
+    report_.warnings.push_back({NameOf(source), reason});
+    LogWarning("{}: {}", source.path, reason);
   }
 
   BuildSpec spec_;  // the files that it names put together

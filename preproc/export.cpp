@@ -172,9 +172,10 @@ Result<ExportReport> Export(const Dataset& dataset, const ExportOptions& options
   if (!format.ok()) return format.status();
   const auto layer = LayerOf(dataset, options.layer);
   if (!layer.ok()) return layer.status();
-  if (dataset.layers()[static_cast<size_t>(*layer)].kind == LayerKind::kProperty)
-    return Status::Error("{}: layer {} is a surface property; elevation and imagery can be exported", dataset.path(),
-                         options.layer);
+  if (const LayerKind kind = dataset.layers()[static_cast<size_t>(*layer)].kind;
+      kind != LayerKind::kElevation && kind != LayerKind::kImagery)
+    return Status::Error("{}: layer {} is of kind {}; elevation and imagery can be exported", dataset.path(),
+                         options.layer, LayerKindName(kind));
   const auto grid = PlanFor(dataset, *layer, *format, options);
   if (!grid.ok()) return Status::Error("{}: {}", options.out, grid.message());
   LayerRaster raster(dataset, *layer, *grid, options.enlarge);

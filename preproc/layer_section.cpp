@@ -63,6 +63,17 @@ std::string SourceTable(const std::vector<SourceRecord>& sources, LayerKind kind
   return out + "</tbody></table>" + More(sources.size(), "sources");
 }
 
+// Of features: they have no pixels.
+std::string VectorSourceTable(const std::vector<SourceRecord>& sources) {
+  if (sources.empty()) return {};
+  std::string out = "<h3>Sources</h3><table>" +
+                    Head(std::array<std::string_view, 3>{"source", "coordinate system", "extent"}) + "<tbody>";
+  for (size_t i = 0; i < std::min(sources.size(), kMostRows); ++i)
+    out += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>", Escape(sources[i].path), Escape(sources[i].crs),
+                       Extent(sources[i].extent));
+  return out + "</tbody></table>" + More(sources.size(), "sources");
+}
+
 struct LevelCount {
   int64_t pages = 0, bytes = 0;
   double share = 0;  // of the Earth's surface, were it a sphere
@@ -201,6 +212,7 @@ Result<std::string> LayerSection(const Dataset& dataset, const WholeLayer& whole
   if (record.derivation)
     out += fmt::format("<p>Made of layer {}; its type is \"{}\".</p>", Escape(record.derivation->of),
                        Escape(record.derivation->type));
+  if (!IsOfGround(whole.kind)) return out + VectorSourceTable(sources) + LevelTable(levels, whole);
   if (whole.kind == LayerKind::kProperty) return out + Legend(*record.property) + LevelTable(levels, whole);
   const auto pictures = Pictures(dataset, whole, geoid);
   if (!pictures.ok()) return pictures;

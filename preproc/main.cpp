@@ -1,5 +1,5 @@
-// belvedere-build: sources to a dataset, and into one and out of it; what is in a dataset; whether it is whole; and out
-// of it again.
+// belvedere-build: sources to a dataset, and into one and out of it; what is in a dataset, and where; whether it is
+// whole.
 
 #include "preproc/build.h"
 #include "preproc/dataset_spec.h"
@@ -8,11 +8,13 @@
 #include "preproc/report_page.h"
 #include "preproc/spec.h"
 #include "preproc/update.h"
+#include "preproc/vectors/feature_index.h"
 #include "runtime/base/clock.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -128,10 +130,63 @@ int RunExport(const std::string& path, const belvedere::ExportOptions& options) 
   return 0;
 }
 
+int RunQuery(const std::string& path, const belvedere::FeatureQuery& query) {
+  const auto dataset = Dataset::Open(path);
+  if (!dataset.ok()) return Fail(dataset.message());
+  const auto count =
+      belvedere::QueryFeatures(**dataset, query, [](const std::string& line) { fmt::print("{}\n", line); });
+  if (!count.ok()) return Fail(count.message());
+  if (*count == query.limit)
+    fmt::print(stderr, "belvedere-build: there may be more than these {}; ask with a greater --limit\n", *count);
+  return 0;
+}
+
 // West, south, east, north, as given.
 std::optional<belvedere::GeoBox> BoxOf(const std::vector<double>& degrees) {
   if (degrees.size() != 4) return std::nullopt;
   return belvedere::GeoBox{degrees[0], degrees[1], degrees[2], degrees[3]};
+}
+
+// As given on the command line.
+struct QueryOptions {
+  std::string dataset_path, of, name;
+  std::vector<double> extent, near;
+  double within_m = 1000;
+  belvedere::FeatureQuery query;
+};
+
+CLI::App* AddQuery(CLI::App& app, QueryOptions& options) {
+  CLI::App* command = app.add_subcommand("query", "features of vector layers, a line of GeoJSON each");
+  command->add_option("DATASET", options.dataset_path, "folder of the dataset")->required();
+  command->add_option("--layer", options.query.layer, "of this layer alone");
+  command->add_option("--class", options.of,
+                      "road, railway, river, water, border, coast, airport, place, building or other");
+  command->add_option("--name", options.name, "whose name has this in it");
+  command->add_option("--extent", options.extent, "WEST SOUTH EAST NORTH in degrees: that touch this box")->expected(4);
+  CLI::Option* near =
+      command->add_option("--near", options.near, "LAT LON in degrees: the nearest to this point first")->expected(2);
+  command->add_option("--within", options.within_m, "metres from --near (default 1000)")
+      ->check(CLI::PositiveNumber)
+      ->needs(near);
+  command->add_option("--where", options.query.where,
+                      "a condition in SQL, on class, name, importance and attributes (JSON): "
+                      "\"json_extract(attributes, '$.highway') = 'primary'\"");
+  command->add_option("--limit", options.query.limit, "at most so many (default 100)")->check(CLI::PositiveNumber);
+  return command;
+}
+
+void FinishQuery(QueryOptions& options) {
+  belvedere::FeatureQuery& query = options.query;
+  if (!options.of.empty() && !(query.of = belvedere::FeatureClassOf(options.of)))
+    throw CLI::ValidationError("--class", "there is no class " + options.of);
+  query.box = BoxOf(options.extent);
+  if (query.box && !(query.box->west_deg <= query.box->east_deg && query.box->south_deg <= query.box->north_deg))
+    throw CLI::ValidationError("--extent", "needs west <= east and south <= north; over 180 east is more than 180");
+  if (!options.name.empty()) query.name = options.name;
+  if (options.near.size() != 2) return;
+  query.near = {options.near[0], options.near[1], options.within_m};
+  if (!(std::abs(query.near->latitude_deg) <= 90 && std::abs(query.near->longitude_deg) <= 180))
+    throw CLI::ValidationError("--near", "LAT is from -90 to 90, LON from -180 to 180");
 }
 
 }  // namespace
@@ -193,6 +248,8 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0, belvedere::kMaxLevel));
   exporting->add_flag("--no-fill", no_fill,
                       "leave empty what has no page of the level; else coarser ones are enlarged");
+  QueryOptions asked;
+  CLI::App* querying = AddQuery(app, asked);
   app.require_subcommand(0, 1);
   try {
     app.parse(argc, argv);
@@ -200,12 +257,14 @@ int main(int argc, char** argv) {
     if (building && spec_path.empty()) throw CLI::RequiredError("SPEC");
     if (building && options.out.empty()) throw CLI::RequiredError("--out");
     options.shard = belvedere::ParseShard(shard);
+    if (querying->parsed()) FinishQuery(asked);
     if (!shard.empty() && !options.shard) throw CLI::ValidationError("--shard", "must be K/N, K from 1 to N");
   } catch (const CLI::ParseError& problem) {
     return app.exit(problem) == 0 ? 0 : 2;
   }
   if (info->parsed()) return RunInfo(dataset_path, json);
   if (verify->parsed()) return RunVerify(dataset_path);
+  if (querying->parsed()) return RunQuery(asked.dataset_path, asked.query);
   if (exporting->parsed()) {
     exported.extent = BoxOf(extent);
     if (no_fill) exported.enlarge = belvedere::Enlarge::kNothing;

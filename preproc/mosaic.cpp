@@ -304,7 +304,7 @@ std::vector<UnusableFile> ExpandMosaics(BuildSpec& spec) {
     std::vector<SourceSpec> expanded;
     for (size_t i = 0; i < layer.sources.size(); ++i) {
       SourceSpec& source = layer.sources[i];
-      if (!IsPattern(source.path)) {
+      if (source.features || !IsPattern(source.path)) {
         expanded.push_back(std::move(source));
         continue;
       }

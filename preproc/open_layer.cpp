@@ -39,6 +39,12 @@ std::vector<RasterSource*> OpenLayer::pointers() const {
   return out;
 }
 
+std::vector<SourceRecord> OpenLayer::FeatureRecords() const {
+  std::vector<SourceRecord> records;
+  for (const FeatureSource& source : features) records.push_back(source.Record());
+  return records;
+}
+
 LayerRecord OpenLayer::Record(const Geoid& geoid) const {
   LayerRecord record;
   record.name = spec.name;
@@ -54,6 +60,7 @@ LayerRecord OpenLayer::Record(const Geoid& geoid) const {
     record.sources.push_back(sources[i]->Record());
     record.sources.back().finest_level = plan[i].finest_level;
   }
+  for (SourceRecord& source : FeatureRecords()) record.sources.push_back(std::move(source));
   return record;
 }
 

@@ -7,6 +7,7 @@
 #include "preproc/plan.h"
 #include "preproc/raster_source.h"
 #include "preproc/spec.h"
+#include "preproc/vectors/feature_source.h"
 #include "runtime/earth/geoid.h"
 
 #include <memory>
@@ -23,7 +24,8 @@ inline constexpr int kBuilderRules = 1;
 struct OpenLayer {
   LayerSpec spec;
   std::vector<std::unique_ptr<RasterSource>> sources;
-  std::vector<PlannedSource> plan;  // of the sources
+  std::vector<PlannedSource> plan;      // of the sources
+  std::vector<FeatureSource> features;  // of a vector layer, in place of sources
   std::vector<Unmatched> unmatched;
   int parent = -1;  // of a derived layer: the place of the one that it is made of
 
@@ -31,6 +33,7 @@ struct OpenLayer {
   // Once all are added: the finest comes last where the spec asks for it.
   void PutInOrder();
   std::vector<RasterSource*> pointers() const;
+  std::vector<SourceRecord> FeatureRecords() const;
   // All that the dataset says of it but for its pages' counts.
   LayerRecord Record(const Geoid& geoid) const;
 };

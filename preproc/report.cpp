@@ -1,8 +1,10 @@
 #include "preproc/report.h"
 
 #include "runtime/base/iso_time.h"
+#include "runtime/paging/building_page.h"
 #include "runtime/paging/dataset_store.h"
 #include "runtime/paging/page_codec.h"
+#include "runtime/paging/vector_page.h"
 
 #include <nlohmann/json.hpp>
 
@@ -113,6 +115,21 @@ void VerifyNode(const Dataset& dataset, int layer, Quadcode node, Verification& 
     if (const auto page = dataset.ReadImage(layer, node); !page.ok()) out.problems.push_back(page.message());
     return;
   }
+  if (record.kind == LayerKind::kVector) {
+    const auto features = dataset.ReadVector(layer, node);
+    if (!features.ok())
+      out.problems.push_back(features.message());
+    else if ((*features)->is_complete == dataset.HasChildren(layer, node))
+      out.problems.push_back(
+          fmt::format("layer {}: quadnode {} is {}", record.name, node.ToString(),
+                      (*features)->is_complete ? "complete and has children" : "incomplete and has none"));
+    return;
+  }
+  if (record.kind == LayerKind::kModel) {
+    if (const auto buildings = dataset.ReadBuildings(layer, node); !buildings.ok())
+      out.problems.push_back(buildings.message());
+    return;
+  }
   if (record.kind == LayerKind::kProperty) {
     const auto property = dataset.ReadProperty(layer, node);
     if (!property.ok())
@@ -194,10 +211,10 @@ std::string DescribeDataset(const Dataset& dataset) {
     for (const int64_t pages : layer.pages_per_level) text += fmt::format(" {}", pages);
     text += "\n";
     for (const SourceRecord& source : layer.sources) {
-      text += fmt::format("  source {}: {}, level {}, west {:.6g} south {:.6g} east {:.6g} north {:.6g}{}{}\n",
-                          source.path, source.crs, source.finest_level, source.extent.west_deg, source.extent.south_deg,
-                          source.extent.east_deg, source.extent.north_deg,
-                          source.utc_s ? ", time " + FormatIsoTime(*source.utc_s) : "",
+      const std::string level = layer.kind == LayerKind::kVector ? "" : fmt::format("level {}, ", source.finest_level);
+      text += fmt::format("  source {}: {}, {}west {:.6g} south {:.6g} east {:.6g} north {:.6g}{}{}\n", source.path,
+                          source.crs, level, source.extent.west_deg, source.extent.south_deg, source.extent.east_deg,
+                          source.extent.north_deg, source.utc_s ? ", time " + FormatIsoTime(*source.utc_s) : "",
                           source.colour_fit ? ", colours " + FitText(*source.colour_fit) : "");
     }
   }

@@ -40,12 +40,34 @@ void GetIf(const json& in, const char* key, std::optional<Value>& value) {
   if (in.contains(key)) value = in.at(key).get<Value>();
 }
 
+json SelectionToJson(const FeatureSelection& selection) {
+  const auto& [of, table, where, importance, resolution_m, fields] = selection;
+  json out = {{"class", FeatureClassName(of)}, {"resolution_m", resolution_m}};
+  for (const auto& [key, text] :
+       {std::pair<const char*, const std::string&>{"table", table}, {"where", where}, {"importance", importance}}) {
+    if (!text.empty()) out[key] = text;
+  }
+  if (!fields.empty()) out["fields"] = fields;
+  return out;
+}
+
+FeatureSelection SelectionFromJson(const json& in) {
+  FeatureSelection selection;
+  selection.of = FeatureClassOf(in.at("class").get<std::string>()).value_or(FeatureClass::kOther);
+  selection.resolution_m = in.at("resolution_m").get<double>();
+  selection.table = in.value("table", "");
+  selection.where = in.value("where", "");
+  selection.importance = in.value("importance", "");
+  if (in.contains("fields")) selection.fields = in.at("fields").get<std::map<std::string, std::string>>();
+  return selection;
+}
+
 }  // namespace
 
 std::string SettingsToJson(const SourceSpec& source) {
   // All members by name: who adds one is told here that datasets must keep it. Files are found anew.
   const auto& [path, written_path, files, tiles, extent, nodata, crs, box, geotransform, metres_per_unit, datum,
-               datum_m, datum_grid, feather_m, utc_s, match_colour] = source;
+               datum_m, datum_grid, feather_m, utc_s, match_colour, features] = source;
   json out = {{"file", AbsolutePath(path)}, {"path", written_path}, {"datum", static_cast<int>(datum)}};
   PutIf(out, "nodata", nodata);
   PutIf(out, "crs", crs);
@@ -59,6 +81,7 @@ std::string SettingsToJson(const SourceSpec& source) {
   PutIf(out, "utc_s", utc_s);
   if (match_colour) out["match_colour"] = true;
   if (!tiles.empty()) out["tiles"] = tiles;
+  if (features) out["features"] = SelectionToJson(*features);
   return out.dump();
 }
 
@@ -81,6 +104,7 @@ Result<SourceSpec> SettingsFromJson(std::string_view text) {
     GetIf(in, "utc_s", source.utc_s);
     source.match_colour = in.value("match_colour", false);
     source.tiles = in.value("tiles", "");
+    if (in.contains("features")) source.features = SelectionFromJson(in.at("features"));
     return source;
   } catch (const std::exception& problem) {
     return Status::Error("a source's settings are damaged ({})", problem.what());

@@ -64,19 +64,26 @@ class Parser : private SpecReader {
     const DeclaredType* type = types_.Find(*kind);
     if (type == nullptr) {
       return Error(*table->get("kind"),
-                   "\"kind\" must be \"elevation\", \"imagery\" or another data type; there is no \"{}\"", *kind);
+                   "\"kind\" must be \"elevation\", \"imagery\", \"vector\" or another data type; there is no \"{}\"",
+                   *kind);
     }
     layer.kind = KindOf(type->meta);
     if (!type->parent.empty()) return ParseDerived(*table, std::move(layer), *type, before);
     if (const toml::node* of = table->get("of"))
       return Error(*of, "\"of\" means nothing for {}, made of sources", *kind);
+    for (const std::string_view key : {"priority", "repeats"}) {
+      const toml::node* unwanted = table->get(key);
+      if (unwanted != nullptr && layer.kind == LayerKind::kVector)
+        return Error(*unwanted, "\"{}\" means nothing for vectors", key);
+    }
     if (Status status = ParsePriority(*table, layer); !status.ok()) return status;
     const toml::array* sources = (*table)["source"].as_array();
     if (sources == nullptr || sources->empty()) {
       return Error(*table, "layer \"{}\" has no source: write [[layer.source]] with a path", layer.name);
     }
     for (const toml::node& source_node : *sources) {
-      auto source = ParseSource(source_node, layer.kind);
+      auto source =
+          layer.kind == LayerKind::kVector ? ParseVectorSource(source_node) : ParseSource(source_node, layer.kind);
       if (!source.ok()) return source.status();
       layer.sources.push_back(std::move(*source));
     }
@@ -177,6 +184,64 @@ class Parser : private SpecReader {
     if (Status status = ParseTime(*table, kind, source); !status.ok()) return status;
     if (Status status = ParseMatchColour(*table, kind, source); !status.ok()) return status;
     return source;
+  }
+
+  Result<SourceSpec> ParseVectorSource(const toml::node& node) const {
+    const toml::table* table = node.as_table();
+    if (table == nullptr) return Error(node, "\"source\" must be a table: write [[layer.source]]");
+    Status status =
+        CheckKeys(*table, {"path", "crs", "features", "table", "where", "importance", "resolution_m", "fields"});
+    SourceSpec source;
+    FeatureSelection selection;
+    std::string of, crs;
+    const auto take = [&](const char* key, std::string& text, bool is_needed) {
+      if (!status.ok()) return;
+      auto read = is_needed ? String(*table, key) : String(*table, key, "");
+      status = read.status();
+      if (read.ok()) text = std::move(*read);
+    };
+    take("path", source.written_path, true);
+    take("features", of, true);
+    take("crs", crs, false);
+    take("table", selection.table, false);
+    take("where", selection.where, false);
+    take("importance", selection.importance, false);
+    if (!status.ok()) return status;
+    const auto known = FeatureClassOf(of);
+    if (!known)
+      return Error(*table->get("features"), "\"features\" must be one of {}, here it is \"{}\"", FeatureClasses(), of);
+    selection.of = *known;
+    const auto resolution = Number(*table, "resolution_m", selection.resolution_m);
+    if (!resolution.ok()) return resolution.status();
+    if (!(*resolution > 0)) return Error(*table->get("resolution_m"), "\"resolution_m\" must be more than 0");
+    selection.resolution_m = *resolution;
+    if (status = ParseFields(*table, selection); !status.ok()) return status;
+    if (!crs.empty()) source.crs = std::move(crs);
+    source.path = ResolveSourcePath(source.written_path, std::filesystem::path(file()).parent_path().string(), {});
+    source.features = std::move(selection);
+    return source;
+  }
+
+  static std::string FeatureClasses() {
+    std::string names;
+    for (int i = 0; i < kFeatureClasses; ++i)
+      names += fmt::format("{}\"{}\"", i == 0 ? "" : ", ", FeatureClassName(static_cast<FeatureClass>(i)));
+    return names;
+  }
+
+  Status ParseFields(const toml::table& table, FeatureSelection& selection) const {
+    const toml::node* node = table.get("fields");
+    if (node == nullptr) return {};
+    const toml::table* fields = node->as_table();
+    if (fields == nullptr || fields->empty())
+      return Error(*node, "\"fields\" must name some: {{ height = \"BLDG_HT\", name = \"STREET\" }}");
+    for (const auto& [key, value] : *fields) {
+      const auto field = value.value_exact<std::string>();
+      if (!field)
+        return Error(value, "\"{}\" must be the name of a field, here it is {}", key.str(), TomlTypeName(value));
+      selection.fields[std::string(key.str())] = *field;
+    }
+    return {};
   }
 
   Result<std::optional<int>> ParseZoom(const toml::table& table, const std::string& path) const {

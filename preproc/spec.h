@@ -12,6 +12,7 @@
 #pragma once
 
 #include "preproc/types/data_type.h"
+#include "preproc/vectors/feature_selection.h"
 #include "runtime/base/status.h"
 #include "runtime/paging/dataset.h"
 
@@ -43,8 +44,9 @@ struct SourceSpec {
   double datum_m = 0;      // for kOffset: height of the source's zero above the ellipsoid
   std::string datum_grid;  // for kGrid: "EPSG:n", or the file
   double feather_m = 0;
-  std::optional<double> utc_s;  // imagery: when it was so; to the second
-  bool match_colour = false;    // imagery: its colours are fitted to those of what lies below it
+  std::optional<double> utc_s;                 // imagery: when it was so; to the second
+  bool match_colour = false;                   // imagery: its colours are fitted to those of what lies below it
+  std::optional<FeatureSelection> features{};  // of a vector layer: which, and what they are
 };
 
 // For people: the path as written, and which of its files.
@@ -67,6 +69,10 @@ struct LayerSpec {
   Priority priority = Priority::kOrder;
   std::optional<DerivedSpec> derived{};  // it has no sources then
 };
+// Whether its pages are made of the pixels of its sources.
+inline bool IsOfRasters(const LayerSpec& layer) {
+  return layer.kind == LayerKind::kElevation || (layer.kind == LayerKind::kImagery && !layer.derived);
+}
 // The name of its data type.
 std::string_view TypeOf(const LayerSpec& layer);
 // Whether the pages of `layer` are made of those of `other`: it is the layer that it names, and of the parent's type.

@@ -7,6 +7,7 @@
 #include "preproc/open_layer.h"
 #include "preproc/page_sink.h"
 #include "preproc/types/derived_layers.h"
+#include "preproc/vectors/vector_layer.h"
 #include "runtime/base/iso_time.h"
 #include "runtime/base/log.h"
 #include "runtime/base/mutex.h"
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <set>
@@ -118,6 +120,12 @@ class Updater {
       OpenLayer layer;
       layer.spec = layer_spec;
       for (const SourceSpec& source_spec : layer_spec.sources) {
+        if (source_spec.features) {
+          auto features = FeatureSource::Read(source_spec);
+          if (!features.ok()) return Refusal(source_spec, features.message());
+          layer.features.push_back(std::move(*features));
+          continue;
+        }
         auto source = RasterSource::Open(source_spec, layer_spec.kind, number++, jobs_, cache_);
         if (!source.ok()) return Refusal(source_spec, source.message());
         layer.Add(std::move(*source));
@@ -146,6 +154,12 @@ class Updater {
         return Status::Error("{}: its heights are above \"{}\", those of this machine above \"{}\"; build it again",
                              options_.out, old->vertical_reference, after[layer].vertical_reference);
       }
+      if (layers_[layer].spec.kind == LayerKind::kVector && !layers_[layer].spec.derived) {
+        const bool is_alike = old != nullptr && AreSourcesAlike(old->sources, after[layer].sources);
+        vectors_change_ |= !is_alike;
+        unchanged.Add(is_alike ? std::vector<GeoBox>() : std::vector<GeoBox>{{-180, -90, 180, 90}});
+        continue;
+      }
       std::vector<GeoBox> extents = ChangedExtents(
           is_new ? std::span<const SourceRecord>() : std::span<const SourceRecord>(old->sources), after[layer].sources,
           [&](size_t place) {
@@ -155,6 +169,35 @@ class Updater {
       FindChanged(layer, old);
       unchanged.Add(std::move(extents));
     }
+    return {};
+  }
+
+  static bool AreSourcesAlike(const std::vector<SourceRecord>& before, const std::vector<SourceRecord>& after) {
+    return std::equal(
+        before.begin(), before.end(), after.begin(), after.end(),
+        [](const SourceRecord& a, const SourceRecord& b) { return a.settings == b.settings && a.state == b.state; });
+  }
+
+  // Vector layers are made anew whole where any of their sources changes: only pages that differ are written.
+  Status MakeVectors(UnchangedPages& unchanged, ChangeWriter& writer) {
+    FeatureIndexMaker index(writer);
+    for (size_t i = 0; i < layers_.size(); ++i) {
+      if (layers_[i].features.empty()) continue;
+      const int number = static_cast<int>(i);
+      const bool is_there = i < writer.before().layers().size();
+      const std::vector<Feature> features = FeaturesOf(layers_[i].features);
+      Status status;
+      if (is_there && AreSourcesAlike(writer.before().layers()[i].sources, layers_[i].FeatureRecords())) {
+        for (const uint64_t word : writer.before().Nodes(number)) unchanged.Take(number, *Quadcode::FromWord(word));
+      } else {
+        status = MakeVectorLayer(number, features, options_.batch_bytes, writer);
+        if (status.ok()) status = RemoveGone(number, unchanged, writer);
+      }
+      if (status.ok() && vectors_change_) status = index.Add(layers_[i].spec.name, features);
+      if (!status.ok()) return status;
+    }
+    if (vectors_change_) return index.Finish();
+    writer.SetFeatures(std::filesystem::path(writer.before().features_path()).filename().string());
     return {};
   }
 
@@ -206,13 +249,13 @@ class Updater {
   Status MakePages(const Geoid& geoid, UnchangedPages& unchanged, ChangeWriter& writer) {
     PageSink sink(writer, options_.batch_bytes, [] { return std::string(); });
     int64_t planned = 0;
-    for (const OpenLayer& layer : layers_) planned += layer.spec.derived ? 0 : CountNodes(layer.plan);
+    for (const OpenLayer& layer : layers_) planned += IsOfRasters(layer.spec) ? CountNodes(layer.plan) : 0;
     std::optional<Progress> progress;
     if (options_.show_progress)
       progress.emplace(planned, clock_, [&sink] { return Progress::Written{sink.pages(), sink.bytes()}; });
     std::vector<std::unique_ptr<LayerBuilder>> builders;
     for (size_t i = 0; i < layers_.size(); ++i) {
-      if (layers_[i].spec.derived) continue;
+      if (!IsOfRasters(layers_[i].spec)) continue;
       builders.push_back(std::make_unique<LayerBuilder>(static_cast<int>(i), layers_[i], geoid, sink, &unchanged,
                                                         progress ? &*progress : nullptr));
     }
@@ -229,8 +272,9 @@ class Updater {
     if (!written.ok()) return written;
     Status checked = CheckChanged();
     for (size_t i = 0; checked.ok() && i < layers_.size(); ++i) {
-      if (!layers_[i].spec.derived) checked = RemoveGone(static_cast<int>(i), unchanged, writer);
+      if (IsOfRasters(layers_[i].spec)) checked = RemoveGone(static_cast<int>(i), unchanged, writer);
     }
+    if (checked.ok()) checked = MakeVectors(unchanged, writer);
     return checked.ok() ? MakeDerived(geoid, unchanged, writer) : checked;
   }
 
@@ -289,6 +333,7 @@ class Updater {
   BlockCache cache_;
   std::vector<OpenLayer> layers_;  // go before the cache
   std::vector<RasterSource*> changed_;
+  bool vectors_change_ = false;              // any layer's sources
   std::set<std::pair<int, uint64_t>> gone_;  // layers and quadcode words of pages that were there
   BuildReport report_;
 };

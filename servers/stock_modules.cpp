@@ -104,7 +104,7 @@ std::optional<Quadcode> Beside(Quadcode node, int east, int north) {
 bool TerrainExists(const Dataset& dataset, Quadcode node) {
   if (node.is_root()) return true;
   for (int any = 0; any < static_cast<int>(dataset.layers().size()); ++any) {
-    if (dataset.Exists(any, node)) return true;
+    if (IsOfGround(dataset.layers()[static_cast<size_t>(any)].kind) && dataset.Exists(any, node)) return true;
   }
   return false;
 }
@@ -157,7 +157,9 @@ ReadModule TerrainModule(const Dataset& dataset, const std::optional<int>& layer
   module.kind = PageKind::kTerrain;
   const auto cores = static_cast<int>(std::max(std::thread::hardware_concurrency(), 1U));
   module.threads = options.terrain_threads > 0 ? options.terrain_threads : std::min(cores, kMostTerrainThreads);
-  for (const LayerRecord& record : dataset.layers()) module.max_level = std::max(module.max_level, record.max_level);
+  for (const LayerRecord& record : dataset.layers()) {
+    if (IsOfGround(record.kind)) module.max_level = std::max(module.max_level, record.max_level);
+  }
   module.exists = [&dataset](Quadcode node) { return TerrainExists(dataset, node); };
   module.read = [&dataset, layer, elevation, exaggeration = options.exaggeration](ReadContext& context, Quadcode node) {
     return ReadTerrain(context, dataset, layer, elevation, node, exaggeration);
@@ -188,6 +190,7 @@ Status RegisterStockModules(ModuleRegistry& registry, const Dataset& dataset, co
   BELVEDERE_CHECK(options.exaggeration > 0);
   for (int layer = 0; layer < static_cast<int>(dataset.layers().size()); ++layer) {
     const LayerRecord& record = dataset.layers()[static_cast<size_t>(layer)];
+    if (!IsOfGround(record.kind)) continue;
     const Status added = registry.Add(ModuleOf(dataset, layer, record));
     if (!added.ok()) return Status::Error("{}: {}", dataset.path(), added.message());
   }

@@ -19,10 +19,12 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::pair<MetaType, std::string_view>, 3> kMetaTypes = {
+constexpr std::array<std::pair<MetaType, std::string_view>, 5> kMetaTypes = {
     {{MetaType::kHeightField, "height field"},
      {MetaType::kImage, "image"},
-     {MetaType::kSurfaceProperty, "surface property"}}};
+     {MetaType::kSurfaceProperty, "surface property"},
+     {MetaType::kVector, "vector"},
+     {MetaType::kModel, "model"}}};
 
 // "#rrggbb" or "#rrggbbaa".
 std::optional<std::array<uint8_t, 4>> ParseColour(std::string_view text) {
@@ -57,8 +59,10 @@ class TypeParser : private SpecReader {
     const auto known =
         std::find_if(kMetaTypes.begin(), kMetaTypes.end(), [&](const auto& one) { return one.second == meta; });
     if (known == kMetaTypes.end())
-      return Error(table_, "type \"{}\": \"meta\" must be \"height field\", \"image\" or \"surface property\"",
-                   type.name);
+      return Error(
+          table_,
+          "type \"{}\": \"meta\" must be \"height field\", \"image\", \"surface property\", \"vector\" or \"model\"",
+          type.name);
     type.meta = known->first;
     status = ParseProperty(type.property);
     if (status.ok()) status = ParseProcess(type);
@@ -149,9 +153,14 @@ std::string_view MetaTypeName(MetaType meta) {
 }
 
 LayerKind KindOf(MetaType meta) {
-  return meta == MetaType::kHeightField ? LayerKind::kElevation
-         : meta == MetaType::kImage     ? LayerKind::kImagery
-                                        : LayerKind::kProperty;
+  switch (meta) {
+    case MetaType::kHeightField: return LayerKind::kElevation;
+    case MetaType::kImage: return LayerKind::kImagery;
+    case MetaType::kSurfaceProperty: return LayerKind::kProperty;
+    case MetaType::kVector: return LayerKind::kVector;
+    case MetaType::kModel: break;
+  }
+  return LayerKind::kModel;
 }
 
 const DeclaredTypes& DeclaredTypes::Stock() {

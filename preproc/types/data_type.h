@@ -7,7 +7,7 @@
 //   [[type]]
 //   name = "slope classes"
 //   parent = "elevation"
-//   meta = "surface property"         # or "height field", "image"
+//   meta = "surface property"         # or "height field", "image", "vector", "model"
 //   read = "height pages"
 //   process = ["slope", { module = "classes", limits = [5, 15, 30], run = "series" }]
 //   write = "property pages"
@@ -39,7 +39,7 @@ class table;
 
 namespace belvedere {
 
-enum class MetaType { kHeightField, kImage, kSurfaceProperty };
+enum class MetaType { kHeightField, kImage, kSurfaceProperty, kVector, kModel };
 std::string_view MetaTypeName(MetaType meta);  // "height field", ..
 
 // Numbers by their keys; one alone is a list of one.

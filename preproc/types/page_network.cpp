@@ -2,6 +2,7 @@
 
 #include "runtime/base/mutex.h"
 #include "runtime/paging/page_codec.h"
+#include "runtime/paging/vector_codec.h"
 
 #include <tbb/flow_graph.h>
 
@@ -29,11 +30,15 @@ Status Decode(MetaType meta, Parcel& parcel) {
   };
   if (meta == MetaType::kHeightField) return take(DecodeElevation(parcel.stored.bytes), parcel.page.heights);
   if (meta == MetaType::kImage) return take(DecodeImage(parcel.stored.bytes), parcel.page.image);
+  if (meta == MetaType::kVector) return take(DecodeVector(parcel.stored.bytes), parcel.page.features);
+  if (meta == MetaType::kModel) return take(DecodeBuildings(parcel.stored.bytes), parcel.page.buildings);
   return take(DecodeProperty(parcel.stored.bytes), parcel.page.property);
 }
 
 std::vector<uint8_t> Encode(MetaType meta, const PageFlow& page) {
   if (meta == MetaType::kImage) return EncodeImage(std::span(page.image->texels).first(4 * kImageTexels));
+  if (meta == MetaType::kVector) return EncodeVector(*page.features);
+  if (meta == MetaType::kModel) return EncodeBuildings(*page.buildings);
   return EncodeProperty(*page.property);
 }
 

@@ -1,6 +1,7 @@
 #include "preproc/types/process_modules.h"
 
 #include "preproc/types/surface_properties.h"
+#include "preproc/vectors/buildings.h"
 
 #include <algorithm>
 #include <array>
@@ -29,6 +30,11 @@ Status Classify(const ModuleSettings& settings, const ModuleContext& context, Pa
   page.values.resize(page.values.size() / static_cast<size_t>(page.channels));
   page.channels = 1;
   for (uint8_t& value : page.values) value = classes[value];
+  return {};
+}
+
+Status Raise(const ModuleSettings&, const ModuleContext&, PageFlow& flow) {
+  flow.buildings = RaiseBuildings(*flow.features, flow.node);
   return {};
 }
 
@@ -68,7 +74,8 @@ ProcessModules& ProcessModules::Stock() {
                                      MetaType::kSurfaceProperty,
                                      {"limits"},
                                      [classes](const PropertyRecord&) { return classes; },
-                                     Classify}}) {
+                                     Classify},
+                                    {"raise", MetaType::kVector, MetaType::kModel, {}, {}, Raise}}) {
       BELVEDERE_CHECK(stock.Add(std::move(module)).ok());
     }
     return stock;
@@ -98,6 +105,8 @@ std::optional<MetaType> PagesOf(std::string_view reader_or_writer) {
   if (reader_or_writer == "height pages") return MetaType::kHeightField;
   if (reader_or_writer == "image pages") return MetaType::kImage;
   if (reader_or_writer == "property pages") return MetaType::kSurfaceProperty;
+  if (reader_or_writer == "vector pages") return MetaType::kVector;
+  if (reader_or_writer == "model pages") return MetaType::kModel;
   return std::nullopt;
 }
 
@@ -117,9 +126,14 @@ Status CheckModules(const DeclaredType& type) {
   if (*written != type.meta)
     return Status::Error("\"{}\" are not of meta-type {}", type.write, MetaTypeName(type.meta));
   if (type.parent.empty()) {
-    if (type.read != "raster sources" || !type.process.empty() || type.meta == MetaType::kSurfaceProperty)
-      return Status::Error("a type without a parent reads \"raster sources\" and is a height field or an image");
-    return {};
+    const bool of_rasters = type.meta == MetaType::kHeightField || type.meta == MetaType::kImage;
+    const bool of_vectors = type.meta == MetaType::kVector;
+    if (type.process.empty() &&
+        ((of_rasters && type.read == "raster sources") || (of_vectors && type.read == "vector sources")))
+      return {};
+    return Status::Error(
+        "a type without a parent reads \"raster sources\" and is a height field or an image, or reads \"vector "
+        "sources\" and is a vector");
   }
   const auto read = PagesOf(type.read);
   if (!read) return Status::Error("it has no reader \"{}\"", type.read);

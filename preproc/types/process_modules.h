@@ -20,7 +20,9 @@
 #include "preproc/types/data_type.h"
 #include "runtime/base/status.h"
 #include "runtime/earth/geoid.h"
+#include "runtime/paging/building_page.h"
 #include "runtime/paging/page.h"
+#include "runtime/paging/vector_page.h"
 
 #include <functional>
 #include <memory>
@@ -36,6 +38,8 @@ struct PageFlow {
   std::shared_ptr<ElevationPage> heights;
   std::shared_ptr<ImagePage> image;  // its level 0
   std::shared_ptr<PropertyPage> property;
+  std::shared_ptr<VectorPage> features;
+  std::shared_ptr<BuildingPage> buildings;
 };
 
 struct ModuleContext {
@@ -57,7 +61,8 @@ struct ProcessModule {
 class ProcessModules {
  public:
   // "slope", "normals", "roughness", "water": of heights (surface_properties.h). "classes": of a property's first
-  // channel, how many of the `limits`, in its own unit, its value reaches.
+  // channel, how many of the `limits`, in its own unit, its value reaches. "raise": models of the buildings among
+  // features (vectors/buildings.h).
   static ProcessModules& Stock();
 
   Status Add(ProcessModule module);  // fails where the name is taken
@@ -68,7 +73,8 @@ class ProcessModules {
   std::vector<ProcessModule> modules_;
 };
 
-// "height pages", "image pages", "property pages": what reads and writes pages of a meta-type. Nothing of another name.
+// "height pages", "image pages", "property pages", "vector pages", "model pages": what reads and writes pages of a
+// meta-type. Nothing of another name.
 std::optional<MetaType> PagesOf(std::string_view reader_or_writer);
 
 // What the bytes mean after each module of the type, where `parent` is what they mean before the first.

@@ -17,6 +17,13 @@ meta = "image"
 read = "raster sources"
 write = "image pages"
 
+# Made of sources, and cut into quadnodes (vectors/feature_cutter.h).
+[[type]]
+name = "vector"
+meta = "vector"
+read = "vector sources"
+write = "vector pages"
+
 # Made of the pages of another layer.
 [[type]]
 name = "slope angle"
@@ -57,6 +64,14 @@ read = "height pages"
 process = ["water"]
 write = "property pages"
 classes = [{ name = "land", colour = "#00000000" }, { name = "water", colour = "#2060a0a0" }]
+
+[[type]]
+name = "buildings"
+parent = "vector"
+meta = "model"
+read = "vector pages"
+process = ["raise"]
+write = "model pages"
 )";
 
 }  // namespace belvedere

@@ -69,6 +69,8 @@ class StackedWriter final : public ChangeWriter {
   std::vector<uint64_t> Resumed(int) override { return {}; }
   Status Leave() override { return Status::Error("a change is made whole or not at all"); }
   const std::string& notes() const override { return notes_; }
+  std::string partial_folder() const override { return store_.partial_folder(); }
+  void SetFeatures(const std::string& file) override { features_ = file; }
   bool WasPut(int layer, Quadcode node) const override { return put_.contains({layer, node.word()}); }
   int64_t written() const override { return written_; }
   int64_t removed() const override { return removed_; }
@@ -86,7 +88,7 @@ class StackedWriter final : public ChangeWriter {
       if (Status status = TakeInChanges(); !status.ok()) return status;
       number = 1;
     }
-    return store_.MoveIntoPlace({build_time, std::move(layers), NewStoreId(), stack_->IdUnder(number)},
+    return store_.MoveIntoPlace({build_time, std::move(layers), NewStoreId(), stack_->IdUnder(number), features_},
                                 store::ChangeFile(number), number);
   }
 
@@ -126,6 +128,7 @@ class StackedWriter final : public ChangeWriter {
   std::set<std::pair<int, uint64_t>> put_, has_deviations_;  // layers and quadcode words
   int64_t written_ = 0, removed_ = 0;
   const std::string notes_;
+  std::string features_;
 };
 
 }  // namespace

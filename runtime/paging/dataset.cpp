@@ -3,6 +3,7 @@
 #include "runtime/paging/dataset_store.h"
 #include "runtime/paging/page_codec.h"
 #include "runtime/paging/store_stack.h"
+#include "runtime/paging/vector_codec.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +45,16 @@ class LmdbDataset final : public Dataset {
   }
   Result<std::shared_ptr<PropertyPage>> ReadProperty(int layer, Quadcode node) const override {
     return Read<PropertyPage>(layer, node, DecodeProperty);
+  }
+  Result<std::shared_ptr<VectorPage>> ReadVector(int layer, Quadcode node) const override {
+    return Read<VectorPage>(layer, node, DecodeVector);
+  }
+  Result<std::shared_ptr<BuildingPage>> ReadBuildings(int layer, Quadcode node) const override {
+    return Read<BuildingPage>(layer, node, DecodeBuildings);
+  }
+  std::string features_path() const override {
+    const std::string& file = stack_->metadata().features;
+    return file.empty() ? file : path_ + "/" + file;
   }
   std::optional<std::vector<uint8_t>> ReadRaw(int layer, Quadcode node) const override {
     return Copy(store::MakeKey(layer, node.word()));
@@ -87,7 +98,14 @@ class LmdbDataset final : public Dataset {
 }  // namespace
 
 std::string_view LayerKindName(LayerKind kind) {
-  return kind == LayerKind::kElevation ? "elevation" : kind == LayerKind::kImagery ? "imagery" : "property";
+  switch (kind) {
+    case LayerKind::kElevation: return "elevation";
+    case LayerKind::kImagery: return "imagery";
+    case LayerKind::kProperty: return "property";
+    case LayerKind::kVector: return "vector";
+    case LayerKind::kModel: return "model";
+  }
+  return "";
 }
 
 Result<std::unique_ptr<Dataset>> Dataset::Open(const std::string& path) {

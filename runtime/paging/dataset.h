@@ -28,11 +28,20 @@
 
 namespace belvedere {
 
+struct BuildingPage;
+struct VectorPage;
+
 inline constexpr int kDatasetVersion = 2;
 inline constexpr int kMaxDatasetLayers = 256;
 
-enum class LayerKind : uint8_t { kElevation = 1, kImagery = 2, kProperty = 4 };
-std::string_view LayerKindName(LayerKind kind);  // "elevation", "imagery", "property"
+enum class LayerKind : uint8_t { kElevation = 1, kImagery = 2, kProperty = 4, kVector = 5, kModel = 6 };
+inline constexpr std::array<LayerKind, 5> kLayerKinds = {LayerKind::kElevation, LayerKind::kImagery,
+                                                         LayerKind::kProperty, LayerKind::kVector, LayerKind::kModel};
+// Whether the ground is drawn of it, rather than something that stands on the ground.
+constexpr bool IsOfGround(LayerKind kind) {
+  return kind != LayerKind::kVector && kind != LayerKind::kModel;
+}
+std::string_view LayerKindName(LayerKind kind);  // "elevation", "imagery", "property", "vector", "model"
 
 // What a layer was made of, as recorded when it was built.
 // What a source's colours, 0 to 255, were made to be: gain * colour + offset, of red, green and blue.
@@ -118,6 +127,11 @@ class Dataset {
   virtual Result<std::shared_ptr<ImagePage>> ReadImage(int layer, Quadcode node) const = 0;
 
   virtual Result<std::shared_ptr<PropertyPage>> ReadProperty(int layer, Quadcode node) const = 0;
+
+  virtual Result<std::shared_ptr<VectorPage>> ReadVector(int layer, Quadcode node) const = 0;
+  virtual Result<std::shared_ptr<BuildingPage>> ReadBuildings(int layer, Quadcode node) const = 0;
+  // The SQLite file with the features of all vector layers; empty where there is none.
+  virtual std::string features_path() const = 0;
 
   // Stored bytes of a page, as ReadElevation decodes them; nullopt when it is not there.
   virtual std::optional<std::vector<uint8_t>> ReadRaw(int layer, Quadcode node) const = 0;

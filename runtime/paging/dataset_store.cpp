@@ -93,7 +93,7 @@ LayerRecord LayerFromJson(const json& in) {
   LayerRecord layer;
   layer.name = in.at("name").get<std::string>();
   const auto kind = in.at("kind").get<std::string>();
-  for (const LayerKind known : {LayerKind::kElevation, LayerKind::kImagery, LayerKind::kProperty}) {
+  for (const LayerKind known : kLayerKinds) {
     if (kind == LayerKindName(known)) layer.kind = known;
   }
   if (kind != LayerKindName(layer.kind)) throw json::other_error::create(501, "unknown layer kind " + kind, nullptr);
@@ -153,6 +153,7 @@ std::string ToJson(const Metadata& metadata) {
               {"layers", layers}};
   if (!metadata.id.empty()) out["id"] = metadata.id;
   if (!metadata.over.empty()) out["over"] = metadata.over;
+  if (!metadata.features.empty()) out["features"] = metadata.features;
   return out.dump(1);
 }
 
@@ -168,6 +169,9 @@ Result<Metadata> FromJson(std::string_view text) {
     metadata.build_time = in.at("build_time").get<std::string>();
     metadata.id = in.value("id", std::string());
     metadata.over = in.value("over", std::string());
+    metadata.features = in.value("features", std::string());
+    if (metadata.features.find('/') != std::string::npos)
+      return Status::Error("its features are said to be in {}, outside of it; build it again", metadata.features);
     for (const auto& layer : in.at("layers")) metadata.layers.push_back(LayerFromJson(layer));
     if (metadata.layers.size() > static_cast<size_t>(kMaxDatasetLayers)) {
       return Status::Error("{} layers, more than {}", metadata.layers.size(), kMaxDatasetLayers);

@@ -22,6 +22,8 @@ namespace belvedere::store {
 inline constexpr size_t kKeyBytes = 9;
 inline constexpr std::string_view kMetadataKey = "meta";
 inline constexpr std::string_view kStoreFile = "data.mdb";
+// A file of features is named by these and an id between them.
+inline constexpr std::string_view kFeaturesPrefix = "features-", kFeaturesSuffix = ".sqlite";
 // Of a store that is not finished: what it is being made of, and what its builder noted.
 inline constexpr std::string_view kMadeOfKey = "made of";
 inline constexpr std::string_view kNotesKey = "notes";
@@ -57,6 +59,8 @@ struct Metadata {
   std::vector<LayerRecord> layers;
   std::string id{};    // of this store: no other has it; empty where it was made before stores had one
   std::string over{};  // of a change: id of the store under it
+  // The file beside the store with the features of its vector layers; empty where it has none.
+  std::string features{};
 };
 
 // An object, and back. FromJson throws where it is damaged.

@@ -64,8 +64,11 @@ class WholeWriter final : public DatasetWriter {
       if (static_cast<size_t>(number) >= layers.size()) return;
       CountPage(layers[static_cast<size_t>(number)], node, 1, static_cast<int64_t>(bytes));
     });
-    return store_.MoveIntoPlace({build_time, std::move(layers), NewStoreId(), {}}, std::string(store::kStoreFile), 0);
+    return store_.MoveIntoPlace({build_time, std::move(layers), NewStoreId(), {}, features_},
+                                std::string(store::kStoreFile), 0);
   }
+  std::string partial_folder() const override { return store_.partial_folder(); }
+  void SetFeatures(const std::string& file) override { features_ = file; }
 
  private:
   void List() {
@@ -77,7 +80,7 @@ class WholeWriter final : public DatasetWriter {
   const std::string path_;
   LmdbWriter store_;
   std::map<int, std::vector<uint64_t>> resumed_;  // by layer
-  std::string notes_;
+  std::string notes_, features_;
 };
 
 }  // namespace

@@ -54,6 +54,12 @@ class DatasetWriter {
   virtual std::vector<uint64_t> Resumed(int layer) = 0;
   virtual const std::string& notes() const = 0;
 
+  // The folder where Finish looks for a file that is to lie beside the store.
+  virtual std::string partial_folder() const = 0;
+  // The name of a file in partial_folder, or in the dataset's folder, that has the features of vector layers. Finish
+  // moves it into place with the store, and removes those of stores before.
+  virtual void SetFeatures(const std::string& file) = 0;
+
   // Writes the metadata (page counts and bytes are filled in here), syncs, and moves the store into place.
   virtual Status Finish(std::vector<LayerRecord> layers, const std::string& build_time) = 0;
 };

@@ -154,14 +154,29 @@ Status LmdbWriter::MoveIntoPlace(const store::Metadata& metadata, const std::str
   Close();
   std::error_code error;
   fs::create_directories(path_, error);
+  const fs::path features = fs::path(partial_) / metadata.features;
+  if (!error && !metadata.features.empty() && fs::exists(features))
+    fs::rename(features, fs::path(path_) / metadata.features, error);
   if (!error) fs::rename(fs::path(partial_) / store::kStoreFile, fs::path(path_) / file, error);
   if (error) return Status::Error("{}: cannot move the new dataset into place: {}", path_, error.message());
   stays_ = true;
   // They lie over what is no longer there, so that nobody looks at them any more.
   for (int number = last_change + 1; fs::remove(fs::path(path_) / store::ChangeFile(number), error); ++number) {
   }
+  RemoveOtherFeatures(metadata.features);
   fs::remove_all(partial_, error);
   return {};
+}
+
+void LmdbWriter::RemoveOtherFeatures(const std::string& kept) const {
+  std::error_code error;
+  std::vector<fs::path> others;
+  for (fs::directory_iterator entry(path_, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    const bool is_ours = name.starts_with(store::kFeaturesPrefix) && name.ends_with(store::kFeaturesSuffix);
+    if (is_ours && name != kept) others.push_back(entry->path());
+  }
+  for (const fs::path& other : others) fs::remove(other, error);
 }
 
 Status LmdbWriter::Problem(int rc) const {

@@ -36,6 +36,7 @@ class LmdbWriter {
   Status StartEmpty(const std::string& made_of);
   // From here on the partial store stays when the writer goes.
   void Leave() { stays_ = true; }
+  const std::string& partial_folder() const { return partial_; }
 
   Status Put(std::span<const uint8_t> key, std::span<const uint8_t> value) EXCLUDES_LOCK(mutex_);
   // Leaves what is there as it is.
@@ -48,8 +49,8 @@ class LmdbWriter {
   // visit(layer, node, bytes as stored), in the order of the keys.
   void ForEachPage(const std::function<void(int, Quadcode, size_t)>& visit) EXCLUDES_LOCK(mutex_);
 
-  // Writes the metadata, syncs, moves the store to `file` in the dataset's folder, which is atomic, and removes changes
-  // there by a number over `last_change`.
+  // Writes the metadata, syncs, moves the features' file if it is new, then the store to `file` in the dataset's
+  // folder, which is atomic, and removes changes there by a number over `last_change`, and features of others.
   Status MoveIntoPlace(const store::Metadata& metadata, const std::string& file, int last_change) EXCLUDES_LOCK(mutex_);
 
  private:
@@ -59,6 +60,7 @@ class LmdbWriter {
   void Close();
   Status PutWith(std::span<const uint8_t> key, std::span<const uint8_t> value, unsigned flags) EXCLUDES_LOCK(mutex_);
   Status Problem(int rc) const;
+  void RemoveOtherFeatures(const std::string& kept) const;
 
   const std::string path_, partial_;
   std::unique_ptr<FolderLock> lock_;

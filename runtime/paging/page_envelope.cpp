@@ -104,11 +104,15 @@ Status CheckPageHeader(std::span<const uint8_t> bytes, uint8_t kind) {
   return {};
 }
 
+uint32_t RawBytesOf(std::span<const uint8_t> bytes) {
+  return GetU32(&bytes[8]);
+}
+
 Result<std::span<const uint8_t>> UnwrapPage(std::span<const uint8_t> bytes, size_t raw_size) {
   thread_local DecompressionContext decompression;
   thread_local std::vector<uint8_t> raw;
-  if (GetU32(&bytes[8]) != raw_size)
-    return Status::Error("raw size {} where {} was expected", GetU32(&bytes[8]), raw_size);
+  if (RawBytesOf(bytes) != raw_size)
+    return Status::Error("raw size {} where {} was expected", RawBytesOf(bytes), raw_size);
   raw.resize(raw_size);
   const auto payload = bytes.subspan(kPageHeaderBytes);
   const size_t size =

@@ -24,6 +24,8 @@ std::vector<uint8_t> WrapPage(uint8_t kind, uint16_t flags, std::span<const uint
 
 // The reason alone when the bytes are no whole page of that kind.
 Status CheckPageHeader(std::span<const uint8_t> bytes, uint8_t kind);
+// How many raw bytes it says there are. REQUIRES: the header is good.
+uint32_t RawBytesOf(std::span<const uint8_t> bytes);
 // The raw bytes, in a buffer that the thread keeps until its next call. REQUIRES: the header is good.
 Result<std::span<const uint8_t>> UnwrapPage(std::span<const uint8_t> bytes, size_t raw_size);
 

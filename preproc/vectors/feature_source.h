@@ -1,0 +1,47 @@
+// FeatureSource: a file of features, anything that OGR reads, brought to WGS 84 and the Earth's grid.
+//
+// Curves become lines, heights of points are dropped, polygons of borders and coasts become their outlines. A feature
+// without a usable place is left out, and the remark says how many there were. Tags that GDAL's driver for
+// OpenStreetMap has in one field ("other_tags") are attributes like the others. Where a feature has no "name" but a
+// "NAME" or "Name", it is called that.
+//
+// Threads: one at a time.
+#pragma once
+
+#include "preproc/spec.h"
+#include "preproc/vectors/feature.h"
+#include "runtime/base/status.h"
+#include "runtime/paging/dataset.h"
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace belvedere {
+
+class FeatureSource {
+ public:
+  // Reads all of it. REQUIRES: spec.features. Fails, with the reason alone, where it cannot be read to its end, or
+  // has no such feature.
+  static Result<FeatureSource> Read(const SourceSpec& spec);
+
+  const SourceSpec& spec() const { return spec_; }
+  const std::vector<Feature>& features() const { return features_; }  // ids from 0
+  // What the user should know of it; empty as a rule.
+  const std::string& remark() const { return remark_; }
+  SourceRecord Record() const { return record_; }
+
+ private:
+  explicit FeatureSource(const SourceSpec& spec) : spec_(spec) {}
+
+  SourceSpec spec_;
+  std::vector<Feature> features_;
+  std::string remark_;
+  SourceRecord record_;
+};
+
+// PostgreSQL's hstore text, as in "a"=>"b","c"=>"d". What is damaged is left out.
+std::map<std::string, std::string> ParseTags(std::string_view text);
+
+}  // namespace belvedere
