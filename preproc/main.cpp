@@ -177,8 +177,8 @@ CLI::App* AddQuery(CLI::App& app, QueryOptions& options) {
 
 void FinishQuery(QueryOptions& options) {
   belvedere::FeatureQuery& query = options.query;
-  if (!options.of.empty() && !(query.of = belvedere::FeatureClassOf(options.of)))
-    throw CLI::ValidationError("--class", "there is no class " + options.of);
+  if (!options.of.empty()) query.of = belvedere::FeatureClassOf(options.of);
+  if (!options.of.empty() && !query.of) throw CLI::ValidationError("--class", "there is no class " + options.of);
   query.box = BoxOf(options.extent);
   if (query.box && !(query.box->west_deg <= query.box->east_deg && query.box->south_deg <= query.box->north_deg))
     throw CLI::ValidationError("--extent", "needs west <= east and south <= north; over 180 east is more than 180");

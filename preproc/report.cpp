@@ -235,11 +235,12 @@ std::string DescribeDatasetJson(const Dataset& dataset) {
     pages += layer.pages;
     layers.push_back(std::move(entry));
   }
-  const json out = {{"version", kDatasetVersion},
-                    {"build_time", dataset.build_time()},
-                    {"bytes", dataset.bytes()},
-                    {"pages", pages},
-                    {"layers", layers}};
+  json out = {{"version", kDatasetVersion},
+              {"build_time", dataset.build_time()},
+              {"bytes", dataset.bytes()},
+              {"pages", pages},
+              {"layers", layers}};
+  if (!dataset.features_path().empty()) out["features"] = dataset.features_path();
   return out.dump(2);
 }
 

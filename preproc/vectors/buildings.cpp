@@ -131,6 +131,7 @@ class PageBuilder {
 
   void AddTop(size_t building, const std::vector<glm::dvec2>& face, const Roof& roof, const Colour& colour) {
     std::vector<glm::dvec3> corners;
+    corners.reserve(face.size());
     for (const glm::dvec2& place : face) corners.emplace_back(place, roof.HeightAt(place));
     AddFace(building, corners, colour);
   }

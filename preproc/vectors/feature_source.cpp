@@ -167,6 +167,7 @@ class Table {
  private:
   Status CheckFields() const {
     std::vector<std::string> wanted;
+    wanted.reserve(selection_.fields.size() + 1);
     for (const auto& [attribute, field] : selection_.fields) wanted.push_back(field);
     if (!selection_.importance.empty()) wanted.push_back(selection_.importance);
     const OGRFeatureDefn& columns = *layer_.GetLayerDefn();
@@ -322,6 +323,7 @@ Result<FeatureSource> FeatureSource::Read(const SourceSpec& spec) {
   source.record_.settings = SettingsToJson(spec);
   std::vector<std::string> files;
   const CPLStringList listed(file->GetFileList());
+  files.reserve(static_cast<size_t>(listed.size()));
   for (int i = 0; i < listed.size(); ++i) files.emplace_back(listed[i]);
   if (files.empty()) files.push_back(spec.path);
   source.record_.state = StateOfFiles(files);

@@ -74,6 +74,7 @@ def main():
         noise(folder / "world.tif", 256, 128, (-180, 360 / 256, 0, 90, 0, -360 / 256), 1, 1, 40)
         noise(folder / "inset.tif", 300, 200, (10, 0.01, 0, 50, 0, -0.01), 1, 2, 3000)
         noise(folder / "colours.tif", 1024, 512, (-180, 360 / 1024, 0, 90, 0, -360 / 1024), 3, 3, 256)
+        (folder / "places.csv").write_text("lon,lat,name\n" + "".join(f"{i},{i / 2},place {i}\n" for i in range(90)))
         layers = """[[layer]]
 name = "elevation"
 kind = "elevation"
@@ -89,6 +90,12 @@ path = "colours.tif"
 [[layer]]
 name = "slopes"
 kind = "slope angle"
+[[layer]]
+name = "places"
+kind = "vector"
+[[layer.source]]
+path = "places.csv"
+features = "place"
 """
         spec = folder / "spec.toml"
         spec.write_text(layers.format(inset="inset.tif"))

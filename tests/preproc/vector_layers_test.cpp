@@ -69,6 +69,7 @@ TEST(VectorLayers, AreBuiltWithTheirIndex) {
   EXPECT_EQ(dataset->layers()[3].kind, LayerKind::kModel);
   EXPECT_EQ(dataset->layers()[1].sources[0].crs, "EPSG:4326");
   EXPECT_TRUE(fs::exists(dataset->features_path()));
+  EXPECT_EQ(json::parse(DescribeDatasetJson(*dataset)).at("features"), dataset->features_path());
   const Quadcode node = dataset->FinestContaining(2, 47.00005, 9.0001);
   const auto houses = dataset->ReadVector(2, node);
   const auto models = dataset->ReadBuildings(3, node);
