@@ -12,6 +12,8 @@ namespace fs = std::filesystem;
 // Address space, not disk: the file grows with what is written.
 constexpr size_t kLargestStoreBytes = size_t{1} << 40;
 constexpr size_t kLeastStoreBytes = size_t{1} << 30;
+// What the system maps around a page that is touched, where the file is in its cache.
+constexpr size_t kMappedAtOnce = size_t{64} << 10;
 
 MDB_val ValueOf(std::span<const uint8_t> bytes) {
   return {bytes.size(), const_cast<uint8_t*>(bytes.data())};
@@ -80,6 +82,7 @@ void LmdbWriter::Close() {
   if (txn_ != nullptr) mdb_txn_abort(std::exchange(txn_, nullptr));
   if (env_ != nullptr) mdb_env_close(std::exchange(env_, nullptr));
   dbi_ = 0;
+  mapping_.Forget();
 }
 
 Status LmdbWriter::PutWith(std::span<const uint8_t> key, std::span<const uint8_t> value, unsigned flags) {
@@ -126,7 +129,19 @@ Status LmdbWriter::Commit() {
   const MutexLock lock(mutex_);
   int rc = mdb_txn_commit(std::exchange(txn_, nullptr));
   if (rc == MDB_SUCCESS) rc = Begin();
+  if (rc == MDB_SUCCESS) GiveBackMapping();
   return rc == MDB_SUCCESS ? Status() : Problem(rc);
+}
+
+// What was committed lies in the mapping alone, which would grow with the store.
+void LmdbWriter::GiveBackMapping() {
+  MDB_cursor* cursor = nullptr;
+  if (!mapping_.is_found() && mdb_cursor_open(txn_, dbi_, &cursor) == MDB_SUCCESS) {
+    MDB_val key{}, value{};
+    if (mdb_cursor_get(cursor, &key, &value, MDB_FIRST) == MDB_SUCCESS) mapping_.Find(key.mv_data);
+    mdb_cursor_close(cursor);
+  }
+  mapping_.GiveBack();
 }
 
 void LmdbWriter::ForEachPage(const std::function<void(int, Quadcode, size_t)>& visit) {
@@ -138,6 +153,7 @@ void LmdbWriter::ForEachPage(const std::function<void(int, Quadcode, size_t)>& v
     if (key.mv_size != store::kKeyBytes) continue;
     const auto* bytes = static_cast<const uint8_t*>(key.mv_data);
     if (const auto node = Quadcode::FromWord(store::WordOfKey(bytes))) visit(int{bytes[0]}, *node, value.mv_size);
+    mapping_.HaveRead(kMappedAtOnce);
   }
   mdb_cursor_close(cursor);
 }

@@ -8,6 +8,7 @@
 #include "runtime/paging/dataset_store.h"
 #include "runtime/paging/dataset_writer.h"
 #include "runtime/paging/folder_lock.h"
+#include "runtime/paging/store_mapping.h"
 
 #include <lmdb.h>
 
@@ -60,6 +61,7 @@ class LmdbWriter {
   void Close();
   Status PutWith(std::span<const uint8_t> key, std::span<const uint8_t> value, unsigned flags) EXCLUDES_LOCK(mutex_);
   Status Problem(int rc) const;
+  void GiveBackMapping() REQUIRES_LOCK(mutex_);
   void RemoveOtherFeatures(const std::string& kept) const;
 
   const std::string path_, partial_;
@@ -69,6 +71,7 @@ class LmdbWriter {
   MDB_env* env_ = nullptr;
   MDB_txn* txn_ = nullptr;
   MDB_dbi dbi_ = 0;
+  StoreMapping mapping_;
 };
 
 }  // namespace belvedere

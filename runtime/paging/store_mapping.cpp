@@ -26,6 +26,11 @@ void StoreMapping::Find(const void* inside) {
 void StoreMapping::HaveRead(size_t bytes) const {
   if (begin_ == end_) return;
   if (read_.fetch_add(bytes, std::memory_order_relaxed) + bytes < kKept) return;
+  GiveBack();
+}
+
+void StoreMapping::GiveBack() const {
+  if (begin_ == end_) return;
   read_.store(0, std::memory_order_relaxed);
   // Of a read-only mapping of a file nothing can be lost by this.
   madvise(reinterpret_cast<void*>(begin_), end_ - begin_, MADV_DONTNEED);

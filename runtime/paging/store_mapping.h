@@ -18,8 +18,11 @@ class StoreMapping {
  public:
   // inside: an address that the mapping holds. Where the system does not tell where it lies, GiveBack does nothing.
   void Find(const void* inside);
+  void Forget() { begin_ = end_ = 0; }
+  bool is_found() const { return begin_ != end_; }
   // Counts bytes that were read, and gives everything back when they have become many.
   void HaveRead(size_t bytes) const;
+  void GiveBack() const;
 
  private:
   static constexpr size_t kKept = size_t{2} << 20;
