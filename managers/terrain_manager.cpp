@@ -50,8 +50,10 @@ class TerrainManager::Worker {
 
   void Step() {
     const std::shared_ptr<const ViewParameters> view = channel_->parameters.Get();
+    const GatePass pass(paging_.reading);
     const double now_s = clock_.NowSeconds();
     if (view->number == 0 || IsUpToDate(*view, now_s)) return;
+    generation_ = paging_.generation.load(std::memory_order_acquire);
     const TraceSpan span("terrain.list");
     DisplayList& list = channel_->terrain_lists.back();
     list.Clear();
@@ -69,7 +71,8 @@ class TerrainManager::Worker {
   // Nothing would change: the same settled view, with an eye that stands still, and no next step of a layer.
   bool IsUpToDate(const ViewParameters& view, double now_s) const {
     if (view.frozen && number_ > 0) return true;
-    return view.number == settled_number_ && view.eye_velocity_mps == glm::dvec3(0) &&
+    return generation_ == paging_.generation.load(std::memory_order_acquire) && view.number == settled_number_ &&
+           view.eye_velocity_mps == glm::dvec3(0) &&
            !steps_.IsDue(view.image_layers, paging_.layers, view.UtcAt(now_s));
   }
 
@@ -144,6 +147,7 @@ class TerrainManager::Worker {
   const DataType terrain_;
   uint64_t number_ = 0;
   uint64_t settled_number_ = 0;
+  uint64_t generation_ = 0;  // of the pages of the last list
   int last_nodes_ = 0;
   bool was_settled_ = false;
   SurfaceState surface_;

@@ -67,6 +67,11 @@ LayerTable MakeLayerTable(const ModuleRegistry& registry) {
   return table;
 }
 
+Result<std::unique_ptr<Page>> ReadPage(Paging& paging, const ModuleRegistry& registry, const PageKey& key) {
+  ReadContext context(paging, registry, key.type);
+  return Read(registry.at(key.type), context, key.node);
+}
+
 Result<PagePin> ReadIntoCache(Paging& paging, const ModuleRegistry& registry, const PageKey& key) {
   if (paging.cache.Contains(key)) {  // asked first, so that only the managers' misses are counted
     if (PagePin pin = paging.cache.Find(key)) return pin;
@@ -76,8 +81,7 @@ Result<PagePin> ReadIntoCache(Paging& paging, const ModuleRegistry& registry, co
   if (!module.exists(key.node)) {
     return Status::Error("layer {}: there is no page {}", module.layer, key.node.ToString());
   }
-  ReadContext context(paging, registry, key.type);
-  Result<std::unique_ptr<Page>> page = Read(module, context, key.node);
+  Result<std::unique_ptr<Page>> page = ReadPage(paging, registry, key);
   if (!page.ok()) {
     paging.cache.MarkFailed(key, page.status());
     return page.status();

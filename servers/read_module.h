@@ -87,6 +87,9 @@ class ModuleRegistry {
 // The layers of all modules; each has the data type of its module.
 LayerTable MakeLayerTable(const ModuleRegistry& registry);
 
+// Reads or makes one page and puts it nowhere; what it is made of goes into the paging's cache. REQUIRES: it exists.
+Result<std::unique_ptr<Page>> ReadPage(Paging& paging, const ModuleRegistry& registry, const PageKey& key);
+
 // Reads one page, inserts it into the cache and returns it pinned; or marks it failed and says why. A page that is
 // there already, or that failed already, is not read again. Exceptions of the module become failures.
 Result<PagePin> ReadIntoCache(Paging& paging, const ModuleRegistry& registry, const PageKey& key);

@@ -35,7 +35,7 @@ Result<std::unique_ptr<Station>> Station::Start(const StationOptions& options, c
 }
 
 Status Station::StartPaging(const StationOptions& options) {
-  Result<std::unique_ptr<Dataset>> dataset = Dataset::Open(options.dataset);
+  Result<std::unique_ptr<LiveDataset>> dataset = LiveDataset::Open(options.dataset);
   if (!dataset.ok()) return dataset.status();
   dataset_ = std::move(*dataset);
   if (!dataset_->FindLayer(LayerKind::kElevation)) {
@@ -57,6 +57,7 @@ Status Station::StartPaging(const StationOptions& options) {
 
   paging_ = std::make_unique<Paging>(MakeLayerTable(registry_), options.cache_bytes, clock_);
   servers_ = std::make_unique<ServerSet>(*paging_, registry_);
+  follower_ = std::make_unique<DatasetFollower>(*paging_, *dataset_, catalogue_.models, stock, clock_);
   const Layer* terrain = paging_->layers.FirstOf(PageKind::kTerrain);
   ground_ = [paging = paging_.get(), type = terrain->type](double latitude_deg, double longitude_deg) {
     const auto ground = GroundUnder(*paging, type, latitude_deg, longitude_deg);
@@ -93,6 +94,7 @@ Station::~Station() {
   render_.reset();
   views_.clear();
   receivers_.clear();
+  follower_.reset();
   servers_.reset();
 }
 
@@ -124,6 +126,7 @@ void Station::RemoveView(ViewId id) {
 
 std::vector<std::string> Station::Notices() const {
   std::vector<std::string> notices = start_notices_;
+  for (std::string& notice : follower_->Notices()) notices.push_back(std::move(notice));
   for (std::string& failure : paging_->cache.Failures(kMostFailuresShown)) notices.push_back(std::move(failure));
   const uint64_t failed = paging_->cache.Stats().failed_pages;
   if (failed > kMostFailuresShown) notices.push_back(fmt::format("{} pages failed in all", failed));

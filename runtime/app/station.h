@@ -3,6 +3,8 @@
 //   start   dataset -> layers -> paging -> servers -> object table and receivers -> render thread -> views
 //   stop    views' managers -> render thread -> channels -> receivers -> servers -> paging -> dataset
 //
+// A dataset that is changed or built anew on disk is followed while the station runs (dataset_follower.h).
+//
 // A view is a channel with its two managers, drawn by the render thread in a window or off-screen. What can be done
 // without is done without: a feed whose port is taken or a folder without models is a line for the user, not an end.
 //
@@ -19,7 +21,8 @@
 #include "runtime/app/ground.h"
 #include "runtime/app/layer_text.h"
 #include "runtime/app/station_file.h"
-#include "runtime/paging/dataset.h"
+#include "runtime/paging/live_dataset.h"
+#include "servers/dataset_follower.h"
 #include "servers/page_server.h"
 #include "servers/read_module.h"
 
@@ -79,11 +82,12 @@ class Station {
 
   const Clock& clock_;
   ImageLimits image_slots_;  // on the GPU
-  std::unique_ptr<Dataset> dataset_;
+  std::unique_ptr<LiveDataset> dataset_;
   Catalogue catalogue_;
   ModuleRegistry registry_;
   std::unique_ptr<Paging> paging_;
   std::unique_ptr<ServerSet> servers_;
+  std::unique_ptr<DatasetFollower> follower_;
   std::unique_ptr<ObjectTable> objects_;
   std::vector<std::unique_ptr<dis::Receiver>> receivers_;
   std::unique_ptr<RenderThread> render_;

@@ -52,6 +52,17 @@ class LmdbDataset final : public Dataset {
   Result<std::shared_ptr<BuildingPage>> ReadBuildings(int layer, Quadcode node) const override {
     return Read<BuildingPage>(layer, node, DecodeBuildings);
   }
+  std::vector<std::string> store_ids() const override {
+    std::vector<std::string> ids;
+    for (int number = 1; number <= stack_->changes() + 1; ++number) ids.push_back(stack_->IdUnder(number));
+    return ids;
+  }
+  void ForEachKey(size_t store, const std::function<void(int, Quadcode)>& visit) const override {
+    stack_->ForEach(static_cast<int>(store), [&visit](std::span<const uint8_t> key, std::span<const uint8_t>) {
+      if (key.size() != store::kKeyBytes) return;
+      if (const auto node = Quadcode::FromWord(store::WordOfKey(key.data()))) visit(int{key[0]}, *node);
+    });
+  }
   std::string features_path() const override {
     const std::string& file = stack_->metadata().features;
     return file.empty() ? file : path_ + "/" + file;

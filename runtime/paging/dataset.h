@@ -130,6 +130,9 @@ class Dataset {
 
   virtual Result<std::shared_ptr<VectorPage>> ReadVector(int layer, Quadcode node) const = 0;
   virtual Result<std::shared_ptr<BuildingPage>> ReadBuildings(int layer, Quadcode node) const = 0;
+  // The ids of its stores, the lowest first, and the pages that one of them names.
+  virtual std::vector<std::string> store_ids() const = 0;
+  virtual void ForEachKey(size_t store, const std::function<void(int layer, Quadcode)>& visit) const = 0;
   // The SQLite file with the features of all vector layers; empty where there is none.
   virtual std::string features_path() const = 0;
 

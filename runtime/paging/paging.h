@@ -10,11 +10,14 @@
 // Threads: `layers` is read-only after the start; cache and queues are for any thread.
 #pragma once
 
+#include "runtime/base/gate.h"
 #include "runtime/paging/layer_table.h"
 #include "runtime/paging/request_queue.h"
 #include "runtime/paging/shared_cache.h"
 
+#include <atomic>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -35,6 +38,10 @@ struct Paging {
   const LayerTable layers;
   SharedCache cache;
   std::vector<std::unique_ptr<RequestQueue>> queues;  // one a data type
+  // Servers read, and terrain managers make a list, while they have a pass; whoever changes what pages are made of
+  // closes it meanwhile.
+  Gate reading;
+  std::atomic<uint64_t> generation{0};  // one more with each such change
 };
 
 }  // namespace belvedere

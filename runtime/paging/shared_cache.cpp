@@ -24,6 +24,7 @@ struct PagePin::Entry {
   Entry* older = nullptr;  // neighbours in the list of unpinned pages
   Entry* newer = nullptr;
   uint64_t released_at = 0;  // tick at which the last pin was given back
+  bool is_dropped = false;   // in no table any more: its last pin frees it
 };
 
 namespace {
@@ -291,15 +292,64 @@ void SharedCache::Unpin(PagePin::Entry* entry) {
   while (pins > 1) {
     if (entry->pins.compare_exchange_weak(pins, pins - 1, std::memory_order_release)) return;
   }
+  std::unique_ptr<PagePin::Entry> dropped;  // freed after the lock is released
   {
     Table& table = *tables_[entry->key.type];
     MutexLock lock(table.mutex);
     if (entry->pins.fetch_sub(1, std::memory_order_acq_rel) > 1) return;  // found again meanwhile
     counters_->pinned_bytes.fetch_sub(entry->charge_bytes, std::memory_order_relaxed);
+    if (entry->is_dropped) {
+      counters_->resident_bytes.fetch_sub(entry->charge_bytes, std::memory_order_relaxed);
+      dropped.reset(entry);
+      return;
+    }
     entry->released_at = counters_->tick.fetch_add(1, std::memory_order_relaxed);
     table.PushNewest(entry);
   }
   while (counters_->resident_bytes.load(std::memory_order_relaxed) > budget_bytes_ && EvictOne()) {
+  }
+}
+
+std::vector<PageKey> SharedCache::Keys(Which which) const {
+  std::vector<PageKey> keys;
+  for (const std::unique_ptr<Table>& table : tables_) {
+    MutexLock lock(table->mutex);
+    for (const PagePin::Entry* entry : table->slots) {
+      for (; entry != nullptr; entry = entry->next_in_slot) {
+        const bool is_pinned = entry->pins.load(std::memory_order_relaxed) > 0;
+        if (which == Which::kAll || is_pinned) keys.push_back(entry->key);
+      }
+    }
+  }
+  return keys;
+}
+
+void SharedCache::Replace(const PageKey& key, std::unique_ptr<const Page> page) {
+  Drop(key);
+  Insert(key, std::move(page)).Release();
+}
+
+void SharedCache::Drop(const PageKey& key) {
+  BELVEDERE_CHECK(key.type < tables_.size());
+  std::unique_ptr<PagePin::Entry> freed;  // after the lock is released
+  Table& table = *tables_[key.type];
+  MutexLock lock(table.mutex);
+  PagePin::Entry* const entry = table.Lookup(key.node);
+  if (entry == nullptr) return;
+  table.Remove(entry);
+  if (entry->pins.load(std::memory_order_relaxed) > 0) {
+    entry->is_dropped = true;
+    return;
+  }
+  table.Unlink(entry);
+  counters_->resident_bytes.fetch_sub(entry->charge_bytes, std::memory_order_relaxed);
+  freed.reset(entry);
+}
+
+void SharedCache::ForgetFailures() {
+  for (const std::unique_ptr<Table>& table : tables_) {
+    MutexLock lock(table->mutex);
+    table->failures.clear();
   }
 }
 

@@ -89,6 +89,17 @@ class SharedCache {
   // Adds the page, evicts what the budget asks for, and returns it pinned (or the one that was already there).
   PagePin Insert(const PageKey& key, std::unique_ptr<const Page> page);
 
+  // Which pages there are, those of lower data types first.
+  enum class Which { kAll, kPinned };
+  std::vector<PageKey> Keys(Which which) const;
+  // The page takes the place of the one that is there, which stays for those that hold pins of it, and goes with the
+  // last. It counts until then.
+  void Replace(const PageKey& key, std::unique_ptr<const Page> page);
+  // Nobody finds the page any more; else as Replace.
+  void Drop(const PageKey& key);
+  // Lets all that failed be tried again.
+  void ForgetFailures();
+
   // reason: one line that names the page, the cause and where.
   void MarkFailed(const PageKey& key, const Status& reason);
   // ok when the key has not failed.

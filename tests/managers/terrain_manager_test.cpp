@@ -68,6 +68,26 @@ TEST_F(TerrainManagerTest, GoesFromNothingToASettledCut) {
   EXPECT_NEAR(list.statistics.height_above_ground_m, 3e6, 10);
 }
 
+TEST_F(TerrainManagerTest, ChangedPagesGiveANewListOfASettledView) {
+  TerrainManager manager(1, paging_, channel_, {}, Clock::System());
+  while (!NextList().statistics.settled) Serve();
+  const uint64_t before = channel_->terrain_lists.front().number;
+  paging_.reading.Close();  // no list is being made from here on
+  for (const PageKey& key : paging_.cache.Keys(SharedCache::Which::kAll)) {
+    auto page = test::FlatPage(key.node, std::vector<float>(kVerticesPerPage, 1.0F));
+    page->max_height_m = 77;
+    paging_.cache.Replace(key, std::move(page));
+  }
+  paging_.generation.fetch_add(1);
+  paging_.reading.Open();
+  while (!NextList().statistics.settled) Serve();
+  EXPECT_GT(channel_->terrain_lists.front().number, before);
+  int changed = 0;
+  for (const PagePin& pin : channel_->terrain_lists.front().page_pins)
+    changed += pin.key().type == kTerrain && pin.as<TerrainPage>().max_height_m == 77 ? 1 : 0;
+  EXPECT_GT(changed, 30);
+}
+
 TEST_F(TerrainManagerTest, ANewViewGivesANewList) {
   TerrainManager manager(1, paging_, channel_, {}, Clock::System());
   while (!NextList().statistics.settled) Serve();

@@ -126,6 +126,53 @@ TEST(SharedCache, AFailureStaysUntilForgottenOrOvertaken) {
   EXPECT_EQ(cache.Stats().failed_pages, 0u);
 }
 
+TEST(SharedCache, AReplacedPageStaysForItsPins) {
+  std::atomic<int> alive{0};
+  SharedCache cache(1'000'000, 2);
+  PagePin old = cache.Insert(Key(0, 1), MakePage(100, 1, &alive));
+  cache.Replace(Key(0, 1), MakePage(200, 2, &alive));
+  EXPECT_EQ(old.as<CountedPage>().label(), 1);
+  EXPECT_EQ(cache.Find(Key(0, 1)).as<CountedPage>().label(), 2);
+  EXPECT_EQ(cache.Stats().resident_bytes, Charge(100) + Charge(200)) << "both count while both are there";
+  PagePin shared = old.Share();
+  old.Release();
+  EXPECT_EQ(alive, 2);
+  shared.Release();
+  EXPECT_EQ(alive, 1);
+  EXPECT_EQ(cache.Stats().resident_bytes, Charge(200));
+  EXPECT_EQ(cache.PinnedBytes(), 0u);
+  cache.Replace(Key(1, 5), MakePage(10, 3, &alive));  // where nothing was
+  EXPECT_TRUE(cache.Contains(Key(1, 5)));
+}
+
+TEST(SharedCache, ADroppedPageIsFoundNoMore) {
+  std::atomic<int> alive{0};
+  SharedCache cache(1'000'000, 1);
+  const PagePin pinned = cache.Insert(Key(0, 1), MakePage(100, 1, &alive));
+  cache.Insert(Key(0, 2), MakePage(100, 2, &alive));
+  cache.Insert(Key(0, 3), MakePage(100, 3, &alive));
+  for (int i = 1; i <= 2; ++i) cache.Drop(Key(0, i));
+  cache.Drop(Key(0, 9));
+  EXPECT_EQ(alive, 2) << "one is pinned";
+  EXPECT_FALSE(cache.Find(Key(0, 1)));
+  EXPECT_FALSE(cache.Find(Key(0, 2)));
+  EXPECT_TRUE(cache.Find(Key(0, 3)));
+  EXPECT_EQ(cache.Insert(Key(0, 1), MakePage(100, 4, &alive)).as<CountedPage>().label(), 4);
+}
+
+TEST(SharedCache, ListsItsKeys) {
+  SharedCache cache(1'000'000, 3);
+  const PagePin pinned = cache.Insert(Key(2, 7), MakePage(100));
+  cache.Insert(Key(0, 1), MakePage(100));
+  const auto all = cache.Keys(SharedCache::Which::kAll);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0], Key(0, 1));
+  EXPECT_EQ(cache.Keys(SharedCache::Which::kPinned), (std::vector<PageKey>{Key(2, 7)}));
+  cache.MarkFailed(Key(1, 1), Status::Error("bad"));
+  cache.ForgetFailures();
+  EXPECT_TRUE(cache.FailureOf(Key(1, 1)).ok());
+}
+
 TEST(SharedCache, FreesEverything) {
   std::atomic<int> alive{0};
   {

@@ -61,6 +61,7 @@ class SmallDataset {
   SmallDataset& operator=(const SmallDataset&) = delete;
 
   const Dataset& operator*() const { return *dataset_; }
+  const std::string& path() const { return path_; }
   static double SeasonTime(size_t step) { return 8e6 * static_cast<double>(step); }
 
  private:
