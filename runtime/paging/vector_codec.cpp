@@ -16,6 +16,7 @@ constexpr uint8_t kKindBuildings = 6;
 constexpr int kZstdLevel = 6;
 constexpr uint32_t kMostRawBytes = 64u << 20;
 constexpr double kCentimetre = 0.01;
+constexpr int64_t kFurthest = int64_t{1} << 40;  // centimetres: more is none on the Earth
 
 class Writer {
  public:
@@ -66,6 +67,13 @@ class Reader {
     const uint64_t value = Number();
     return static_cast<int64_t>(value >> 1) ^ -static_cast<int64_t>(value & 1);
   }
+  // The sum of what was before and what comes, which lies between the two.
+  int64_t After(int64_t before, int64_t least, int64_t most) {
+    int64_t sum = 0;
+    const bool is_good = !__builtin_add_overflow(before, Signed(), &sum) && sum >= least && sum <= most;
+    ok_ = ok_ && is_good;
+    return ok_ ? sum : least;
+  }
   uint32_t AtMost(uint64_t most) {
     const uint64_t value = Number();
     ok_ = ok_ && value <= most;
@@ -77,7 +85,11 @@ class Reader {
     return ok_ ? AtMost(size - 1) : 0;
   }
   // Of things that take a byte at least each.
-  uint32_t Count() { return AtMost(bytes_.size() - at_); }
+  uint32_t Count() {
+    const uint64_t count = Number();
+    ok_ = ok_ && count <= bytes_.size() - at_;
+    return ok_ ? static_cast<uint32_t>(count) : 0;
+  }
   std::string Text() {
     const uint32_t size = Count();
     const auto text = bytes_.subspan(at_, size);
@@ -180,7 +192,8 @@ Result<std::shared_ptr<VectorPage>> DecodeVector(std::span<const uint8_t> bytes)
   int64_t id = 0;
   uint32_t parts = 0, attributes = 0, points = 0;
   for (VectorFeature& feature : page->features) {
-    feature.id = static_cast<uint32_t>(id += in.Signed());
+    id = in.After(id, 0, UINT32_MAX);
+    feature.id = static_cast<uint32_t>(id);
     feature.of = static_cast<FeatureClass>(in.AtMost(kFeatureClasses - 1));
     feature.shape = static_cast<FeatureShape>(in.AtMost(2));
     feature.first_part = parts;
@@ -194,8 +207,9 @@ Result<std::shared_ptr<VectorPage>> DecodeVector(std::span<const uint8_t> bytes)
   }
   int64_t x = 0, y = 0;
   for (VectorPoint& point : page->points) {
-    point.x = static_cast<int32_t>(x += in.Signed());
-    point.y = static_cast<int32_t>(y += in.Signed());
+    x = in.After(x, INT32_MIN, INT32_MAX);
+    y = in.After(y, INT32_MIN, INT32_MAX);
+    point = {static_cast<int32_t>(x), static_cast<int32_t>(y)};
   }
   for (VectorPage::AttributeUse& use : page->attributes) {
     use.key = in.Place(page->keys.size());
@@ -252,7 +266,8 @@ Result<std::shared_ptr<BuildingPage>> DecodeBuildings(std::span<const uint8_t> b
   page->details.resize(in.Count());
   int64_t id = 0;
   for (Building& building : page->buildings) {
-    building.feature = static_cast<uint32_t>(id += in.Signed());
+    id = in.After(id, 0, UINT32_MAX);
+    building.feature = static_cast<uint32_t>(id);
     building.anchor.x = in.AtMost(UINT32_MAX);
     building.anchor.y = in.AtMost(kGridNorthPole);
     building.height_m = Metres(in.Signed());
@@ -261,7 +276,7 @@ Result<std::shared_ptr<BuildingPage>> DecodeBuildings(std::span<const uint8_t> b
   std::array<int64_t, 3> place{};
   for (BuildingVertex& vertex : page->vertices) {
     vertex.building = static_cast<uint16_t>(in.Place(page->buildings.size()));
-    for (int64_t& axis : place) axis += in.Signed();
+    for (int64_t& axis : place) axis = in.After(axis, -kFurthest, kFurthest);
     vertex.east_m = Metres(place[0]);
     vertex.north_m = Metres(place[1]);
     vertex.up_m = Metres(place[2]);
@@ -269,10 +284,9 @@ Result<std::shared_ptr<BuildingPage>> DecodeBuildings(std::span<const uint8_t> b
     for (uint8_t& part : vertex.colour) part = in.Byte();
   }
   int64_t index = 0;
-  bool is_whole = page->buildings.size() <= UINT16_MAX + size_t{1};
+  bool is_whole = in.ok() && page->buildings.size() <= UINT16_MAX + size_t{1};
   for (uint32_t& next : page->indices) {
-    index += in.Signed();
-    is_whole = is_whole && index >= 0 && index < static_cast<int64_t>(page->vertices.size());
+    index = in.After(index, 0, static_cast<int64_t>(page->vertices.size()) - 1);
     next = static_cast<uint32_t>(index);
   }
   uint32_t indices = 0;
