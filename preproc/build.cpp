@@ -63,6 +63,9 @@ class Builder {
       for (OpenLayer& layer : layers_) {
         if (layer.spec.kind == LayerKind::kImagery) layer.unmatched = MatchColours(layer.pointers(), **geoid);
       }
+      for (const FeatureSource* source : CorrectAlongLines(layers_, **geoid))
+        Warn(source->spec(),
+             fmt::format("there is no elevation layer {} that it could correct", source->spec().features->corrects));
       const size_t left_out = excluded_.size();  // what could not be opened is in no page
       const double opened_s = clock_.NowSeconds();
       if (Status status = MakePages(**geoid, **writer); !status.ok()) return status;

@@ -170,6 +170,11 @@ std::vector<int32_t> Composite::Heights_mm(Quadcode node) {
   return heights_mm;
 }
 
+double Composite::HeightAt(double latitude_deg, double longitude_deg, std::span<const PlannedSource> plan) {
+  const int level = SourceLevel(plan, Quadcode::Containing(latitude_deg, longitude_deg, kMaxLevel));
+  return HeightsAt({{longitude_deg}, {latitude_deg}, {0}}, std::ldexp(kTreeDegrees / kCells, -level), level).metres[0];
+}
+
 std::vector<double> Composite::ProbeHeights(Quadcode node) {
   return HeightsAt(ProbeLattice(node), node.SizeDegrees() / (2 * kCells), node.level() + 1).metres;
 }

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "preproc/colour_fit.h"
+#include "preproc/plan.h"
 #include "preproc/source_sampler.h"
 #include "preproc/void_fill.h"
 #include "runtime/earth/geoid.h"
@@ -16,6 +17,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace belvedere {
@@ -34,6 +36,8 @@ class Composite {
   // A source's colours, its place counted from the lowest, and those of what is below it, where both are opaque.
   // REQUIRES: kind is imagery.
   std::vector<ColourPair> ColourPairs(size_t place, const LatticeRows& lattice, double spacing_deg);
+  // The height, in metres, that the sources have at a place, at the finest level that the plan of them has there.
+  double HeightAt(double latitude_deg, double longitude_deg, std::span<const PlannedSource> plan);
   // The height, in metres, that the sources have at the probes of a node, as if asked for by its children.
   std::vector<double> ProbeHeights(Quadcode node);
 

@@ -58,7 +58,9 @@ BoundedPage LayerBuilder::BuildElevation(Quadcode node) {
   page->heights_mm = composites_.local()->Heights_mm(node);
   const int source_level = SourceLevel(layer_.plan, node);
   BoundedPage bounded;
-  if (node.level() < source_level || NeedsRefinement(*page, node, source_level)) {
+  const bool is_refined = node.level() < source_level || NeedsRefinement(*page, node, source_level);
+  if (layer_.correction) layer_.correction->Apply(node, page->heights_mm);
+  if (is_refined) {
     std::array<BoundedPage, 4> finer;
     tbb::task_group children;
     for (size_t which = 0; which < 4; ++which) {

@@ -1,5 +1,6 @@
 #include "preproc/open_layer.h"
 
+#include "preproc/composite.h"
 #include "preproc/source_path.h"
 
 #include <gdal_priv.h>
@@ -62,6 +63,31 @@ LayerRecord OpenLayer::Record(const Geoid& geoid) const {
   }
   for (SourceRecord& source : FeatureRecords()) record.sources.push_back(std::move(source));
   return record;
+}
+
+std::vector<const FeatureSource*> CorrectAlongLines(std::span<OpenLayer> layers, const Geoid& geoid) {
+  std::vector<const FeatureSource*> homeless;
+  for (const OpenLayer& vectors : layers) {
+    for (const FeatureSource& source : vectors.features) {
+      const FeatureSelection& selection = *source.spec().features;
+      if (selection.corrects.empty()) continue;
+      const auto ground = std::find_if(layers.begin(), layers.end(), [&](const OpenLayer& layer) {
+        return layer.spec.kind == LayerKind::kElevation && layer.spec.name == selection.corrects;
+      });
+      if (ground == layers.end()) {
+        homeless.push_back(&source);
+        continue;
+      }
+      auto correction = ground->correction ? std::make_shared<LineCorrection>(*ground->correction)
+                                           : std::make_shared<LineCorrection>();
+      Composite heights(LayerKind::kElevation, ground->pointers(), geoid);
+      correction->Add(source.features(), selection.width_m, [&](double latitude_deg, double longitude_deg) {
+        return heights.HeightAt(latitude_deg, longitude_deg, ground->plan);
+      });
+      ground->correction = std::move(correction);
+    }
+  }
+  return homeless;
 }
 
 std::optional<int> ParentOf(const LayerSpec& derived, std::span<const OpenLayer> layers) {

@@ -8,6 +8,7 @@
 #include "preproc/raster_source.h"
 #include "preproc/spec.h"
 #include "preproc/vectors/feature_source.h"
+#include "preproc/vectors/line_correction.h"
 #include "runtime/earth/geoid.h"
 
 #include <memory>
@@ -24,8 +25,9 @@ inline constexpr int kBuilderRules = 1;
 struct OpenLayer {
   LayerSpec spec;
   std::vector<std::unique_ptr<RasterSource>> sources;
-  std::vector<PlannedSource> plan;      // of the sources
-  std::vector<FeatureSource> features;  // of a vector layer, in place of sources
+  std::vector<PlannedSource> plan;                   // of the sources
+  std::vector<FeatureSource> features;               // of a vector layer, in place of sources
+  std::shared_ptr<const LineCorrection> correction;  // of an elevation layer, where vectors ask for it
   std::vector<Unmatched> unmatched;
   int parent = -1;  // of a derived layer: the place of the one that it is made of
 
@@ -37,6 +39,10 @@ struct OpenLayer {
   // All that the dataset says of it but for its pages' counts.
   LayerRecord Record(const Geoid& geoid) const;
 };
+
+// What the vector layers among them make of the ground of the elevation layers. Returns the sources whose elevation
+// layer is not there.
+std::vector<const FeatureSource*> CorrectAlongLines(std::span<OpenLayer> layers, const Geoid& geoid);
 
 // The place among them of the layer that a derived one is made of; nothing where it is not there.
 std::optional<int> ParentOf(const LayerSpec& derived, std::span<const OpenLayer> layers);

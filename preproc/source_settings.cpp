@@ -41,13 +41,16 @@ void GetIf(const json& in, const char* key, std::optional<Value>& value) {
 }
 
 json SelectionToJson(const FeatureSelection& selection) {
-  const auto& [of, table, where, importance, resolution_m, fields] = selection;
+  const auto& [of, table, where, importance, resolution_m, fields, corrects, width_m] = selection;
   json out = {{"class", FeatureClassName(of)}, {"resolution_m", resolution_m}};
-  for (const auto& [key, text] :
-       {std::pair<const char*, const std::string&>{"table", table}, {"where", where}, {"importance", importance}}) {
+  for (const auto& [key, text] : {std::pair<const char*, const std::string&>{"table", table},
+                                  {"where", where},
+                                  {"importance", importance},
+                                  {"corrects", corrects}}) {
     if (!text.empty()) out[key] = text;
   }
   if (!fields.empty()) out["fields"] = fields;
+  if (width_m > 0) out["width_m"] = width_m;
   return out;
 }
 
@@ -58,6 +61,8 @@ FeatureSelection SelectionFromJson(const json& in) {
   selection.table = in.value("table", "");
   selection.where = in.value("where", "");
   selection.importance = in.value("importance", "");
+  selection.corrects = in.value("corrects", "");
+  selection.width_m = in.value("width_m", 0.0);
   if (in.contains("fields")) selection.fields = in.at("fields").get<std::map<std::string, std::string>>();
   return selection;
 }

@@ -189,8 +189,8 @@ class Parser : private SpecReader {
   Result<SourceSpec> ParseVectorSource(const toml::node& node) const {
     const toml::table* table = node.as_table();
     if (table == nullptr) return Error(node, "\"source\" must be a table: write [[layer.source]]");
-    Status status =
-        CheckKeys(*table, {"path", "crs", "features", "table", "where", "importance", "resolution_m", "fields"});
+    Status status = CheckKeys(*table, {"path", "crs", "features", "table", "where", "importance", "resolution_m",
+                                       "fields", "corrects", "width_m"});
     SourceSpec source;
     FeatureSelection selection;
     std::string of, crs;
@@ -206,6 +206,7 @@ class Parser : private SpecReader {
     take("table", selection.table, false);
     take("where", selection.where, false);
     take("importance", selection.importance, false);
+    take("corrects", selection.corrects, false);
     if (!status.ok()) return status;
     const auto known = FeatureClassOf(of);
     if (!known)
@@ -215,6 +216,14 @@ class Parser : private SpecReader {
     if (!resolution.ok()) return resolution.status();
     if (!(*resolution > 0)) return Error(*table->get("resolution_m"), "\"resolution_m\" must be more than 0");
     selection.resolution_m = *resolution;
+    const auto width = Number(*table, "width_m", 0);
+    if (!width.ok()) return width.status();
+    selection.width_m = *width;
+    if (selection.corrects.empty() != !table->contains("width_m"))
+      return Error(*table,
+                   "\"corrects\" names an elevation layer, and \"width_m\" how wide lines are: one needs the other");
+    if (!selection.corrects.empty() && !(*width > 0))
+      return Error(*table->get("width_m"), "\"width_m\" must be more than 0");
     if (status = ParseFields(*table, selection); !status.ok()) return status;
     if (!crs.empty()) source.crs = std::move(crs);
     source.path = ResolveSourcePath(source.written_path, std::filesystem::path(file()).parent_path().string(), {});

@@ -2,15 +2,18 @@
 
 #include "preproc/changed_extents.h"
 #include "preproc/dataset_spec.h"
+#include "preproc/georeference.h"
 #include "preproc/layer_builder.h"
 #include "preproc/mosaic.h"
 #include "preproc/open_layer.h"
 #include "preproc/page_sink.h"
+#include "preproc/source_settings.h"
 #include "preproc/types/derived_layers.h"
 #include "preproc/vectors/vector_layer.h"
 #include "runtime/base/iso_time.h"
 #include "runtime/base/log.h"
 #include "runtime/base/mutex.h"
+#include "runtime/earth/units.h"
 #include "runtime/paging/change_writer.h"
 
 #include <algorithm>
@@ -25,6 +28,16 @@
 
 namespace belvedere {
 namespace {
+
+// By so many metres on every side.
+GeoBox Widened(const GeoBox& box, double by_m) {
+  constexpr double kLeastMetresPerDegree = 110574, kNearPole_deg = 89.9;  // of latitude
+  const double reach_deg = by_m / kLeastMetresPerDegree;
+  const double furthest_deg = std::min(std::max(std::abs(box.south_deg), std::abs(box.north_deg)), kNearPole_deg);
+  const double reach_east_deg = reach_deg / std::cos(furthest_deg * kRadiansPerDegree);
+  return {box.west_deg - reach_east_deg, box.south_deg - reach_deg, box.east_deg + reach_east_deg,
+          box.north_deg + reach_deg};
+}
 
 // Pages of the dataset as it was, where nothing touches them.
 class UnchangedPages final : public KnownPages {
@@ -100,6 +113,9 @@ class Updater {
     for (OpenLayer& layer : layers_) {
       if (layer.spec.kind == LayerKind::kImagery) layer.unmatched = MatchColours(layer.pointers(), **geoid);
     }
+    for (const FeatureSource* source : CorrectAlongLines(layers_, **geoid))
+      Warn(NameOf(source->spec()),
+           fmt::format("there is no elevation layer {} that it could correct", source->spec().features->corrects));
     std::vector<LayerRecord> records;
     records.reserve(layers_.size());
     for (const OpenLayer& layer : layers_) records.push_back(layer.Record(**geoid));
@@ -166,10 +182,55 @@ class Updater {
             return after[layer].kind == LayerKind::kElevation && layers_[layer].sources[place]->HasVoids();
           });
       if (layers_[layer].spec.derived && !IsDerivedAlike(old, after[layer])) extents.push_back({-180, -90, 180, 90});
+      if (after[layer].kind == LayerKind::kElevation) AddCorrected(before.layers(), after[layer].name, extents);
       FindChanged(layer, old);
       unchanged.Add(std::move(extents));
     }
     return {};
+  }
+
+  // Where lines correct the elevation layer: all of a source's that has come, gone or changed, and each line whose
+  // ground has changed somewhere.
+  void AddCorrected(const std::vector<LayerRecord>& before, const std::string& elevation,
+                    std::vector<GeoBox>& extents) const {
+    const std::vector<GeoBox> of_ground = extents;
+    const auto add = [&](const GeoBox& box, const FeatureSelection& selection) {
+      extents.push_back(Widened(box, selection.width_m));
+    };
+    std::vector<SourceRecord> now, old;
+    for (const OpenLayer& layer : layers_) {
+      for (SourceRecord& record : layer.FeatureRecords()) now.push_back(std::move(record));
+    }
+    for (const LayerRecord& layer : before) {
+      if (layer.kind == LayerKind::kVector) old.insert(old.end(), layer.sources.begin(), layer.sources.end());
+    }
+    for (const SourceRecord& record : old) {
+      const auto spec = SettingsFromJson(record.settings);
+      const bool corrects = spec.ok() && spec->features && spec->features->corrects == elevation;
+      if (corrects && !Has(now, record)) add(record.extent, *spec->features);
+    }
+    for (const OpenLayer& layer : layers_) {
+      for (const FeatureSource& source : layer.features) {
+        const FeatureSelection& selection = *source.spec().features;
+        if (selection.corrects != elevation) continue;
+        if (!Has(old, source.Record())) {
+          add(source.Record().extent, selection);
+          continue;
+        }
+        for (const Feature& feature : source.features()) {
+          const GeoBox box = ExtentOf(std::span(&feature, 1));
+          const bool is_on_changed = std::any_of(of_ground.begin(), of_ground.end(),
+                                                 [&](const GeoBox& changed) { return Overlap(changed, box); });
+          if (is_on_changed) add(box, selection);
+        }
+      }
+    }
+  }
+
+  static bool Has(const std::vector<SourceRecord>& sources, const SourceRecord& wanted) {
+    return std::any_of(sources.begin(), sources.end(), [&](const SourceRecord& other) {
+      return other.settings == wanted.settings && other.state == wanted.state;
+    });
   }
 
   static bool AreSourcesAlike(const std::vector<SourceRecord>& before, const std::vector<SourceRecord>& after) {

@@ -22,6 +22,9 @@ struct FeatureSelection {
   double resolution_m = 1;
   // Attribute in the dataset -> field of the source. None: all fields, by their names.
   std::map<std::string, std::string> fields;
+  // The elevation layer whose ground is made to fit its lines, which are so wide (line_correction.h); empty: none.
+  std::string corrects;
+  double width_m = 0;
 };
 
 // What a class means among the tags of OpenStreetMap, as GDAL's driver has them in tables.

@@ -100,7 +100,7 @@ class Shaper {
   bool is_good_ = true;
 };
 
-double ExtentOf(const Feature& feature) {
+double LengthAround(const Feature& feature) {
   double around = 0;
   for (const FeaturePart& part : feature.parts) {
     for (size_t i = 1; i < part.size(); ++i)
@@ -233,7 +233,7 @@ class Table {
 
   double ImportanceOf(const Feature& feature) const {
     const std::string key = selection_.importance.empty() ? osm_.ordered_by : selection_.importance;
-    const double extent = ExtentOf(feature);
+    const double extent = LengthAround(feature);
     const auto found = std::find_if(feature.attributes.begin(), feature.attributes.end(),
                                     [&](const Attribute& attribute) { return attribute.first == key; });
     if (key.empty()) return extent;
@@ -280,22 +280,6 @@ Result<OGRLayer*> TableOf(GDALDataset& file, const FeatureSelection& selection, 
   return layer;
 }
 
-GeoBox BoxOf(const std::vector<Feature>& features) {
-  int64_t west = INT64_MAX, south = INT64_MAX, east = INT64_MIN, north = INT64_MIN;
-  for (const Feature& feature : features) {
-    for (const FeaturePart& part : feature.parts) {
-      for (const GridPlace& place : part) {
-        west = std::min(west, place.x);
-        east = std::max(east, place.x);
-        south = std::min(south, place.y);
-        north = std::max(north, place.y);
-      }
-    }
-  }
-  const auto degrees = [](int64_t units) { return static_cast<double>(units) / kGridUnitsPerDegree; };
-  return {degrees(west) - 180, degrees(south) - 90, degrees(east) - 180, degrees(north) - 90};
-}
-
 }  // namespace
 
 Result<FeatureSource> FeatureSource::Read(const SourceSpec& spec) {
@@ -319,7 +303,7 @@ Result<FeatureSource> FeatureSource::Read(const SourceSpec& spec) {
                          unusable > 0 ? fmt::format("; of {} it is missing or not on the Earth", unusable) : "");
   if (unusable > 0) source.remark_ = fmt::format("{} features have no place on the Earth and are left out", unusable);
   source.record_.path = spec.written_path;
-  source.record_.extent = BoxOf(source.features_);
+  source.record_.extent = ExtentOf(source.features_);
   source.record_.settings = SettingsToJson(spec);
   std::vector<std::string> files;
   const CPLStringList listed(file->GetFileList());
@@ -328,6 +312,22 @@ Result<FeatureSource> FeatureSource::Read(const SourceSpec& spec) {
   if (files.empty()) files.push_back(spec.path);
   source.record_.state = StateOfFiles(files);
   return source;
+}
+
+GeoBox ExtentOf(std::span<const Feature> features) {
+  int64_t west = INT64_MAX, south = INT64_MAX, east = INT64_MIN, north = INT64_MIN;
+  for (const Feature& feature : features) {
+    for (const FeaturePart& part : feature.parts) {
+      for (const GridPlace& place : part) {
+        west = std::min(west, place.x);
+        east = std::max(east, place.x);
+        south = std::min(south, place.y);
+        north = std::max(north, place.y);
+      }
+    }
+  }
+  const auto degrees = [](int64_t units) { return static_cast<double>(units) / kGridUnitsPerDegree; };
+  return {degrees(west) - 180, degrees(south) - 90, degrees(east) - 180, degrees(north) - 90};
 }
 
 std::map<std::string, std::string> ParseTags(std::string_view text) {

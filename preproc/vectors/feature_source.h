@@ -14,6 +14,7 @@
 #include "runtime/paging/dataset.h"
 
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,6 +41,9 @@ class FeatureSource {
   std::string remark_;
   SourceRecord record_;
 };
+
+// Degrees; over 180 E east is more than 180.
+GeoBox ExtentOf(std::span<const Feature> features);
 
 // PostgreSQL's hstore text, as in "a"=>"b","c"=>"d". What is damaged is left out.
 std::map<std::string, std::string> ParseTags(std::string_view text);

@@ -19,11 +19,11 @@ struct Inset {
   int width, height;
 };
 // Each where pages hold posts of others: within one, on borders of trees, over 180 E, at a pole.
-const Inset kInsets[] = {{"within", Degrees(11.2, 47.9, 0.01), 60, 40},
-                         {"tree_corner", Degrees(44.8, 0.25, 0.01), 40, 50},
-                         {"over_180", Degrees(179.7, -10, 0.01), 60, 40},
-                         {"pole", Degrees(-30, 90, 0.02), 50, 30},
-                         {"border_of_quadnodes", Degrees(22.5, 22.5, 0.01), 30, 30}};
+const Inset kInsets[] = {{"within", Degrees(11.2, 47.9, 0.02), 30, 20},
+                         {"tree_corner", Degrees(44.8, 0.25, 0.02), 20, 25},
+                         {"over_180", Degrees(179.7, -10, 0.02), 30, 20},
+                         {"pole", Degrees(-30, 90, 0.03), 33, 20},
+                         {"border_of_quadnodes", Degrees(22.5, 22.5, 0.02), 15, 15}};
 
 TEST(Update, AddedAndRemovedIsAsIfBuiltSo) {
   for (const Inset& inset : kInsets) {

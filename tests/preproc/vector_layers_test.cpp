@@ -6,7 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <random>
 
 namespace belvedere {
 namespace {
@@ -180,6 +183,86 @@ TEST(VectorLayers, ASourceThatCannotBeReadIsLeftOut) {
   EXPECT_EQ(Ask(folder, {.limit = 1000}).size(), 100u);
 }
 
+// A plane of 9 m posts that rises to the east, noise on it, and a road from south to north.
+std::string PrepareRoad(const std::string& name) {
+  const std::string folder = Prepare(name);
+  std::mt19937 random(3);
+  Write(folder + "/fine.tif",
+        {.width = 160, .height = 160, .affine = Degrees(20, 10.0128, 0.00008), .value = [&](int, int column, int) {
+           return 300 + 0.5 * column + static_cast<double>(random() % 400) / 100;
+         }});
+  std::ofstream(folder + "/road.geojson")
+      << R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":)"
+      << R"({"type":"LineString","coordinates":[[20.0063,10.001],[20.0063,10.012]]}}]})";
+  return folder;
+}
+const std::string kFine = Layer("elevation", {"path = \"world.tif\"", "path = \"fine.tif\"\ndatum = \"ellipsoid\""});
+const std::string kRoad =
+    "[[layer]]\nname = \"roads\"\nkind = \"vector\"\n[[layer.source]]\npath = \"road.geojson\"\nfeatures = \"road\"\n"
+    "corrects = \"elevation\"\nwidth_m = 60\n";
+
+double HeightAt(const Dataset& dataset, double latitude_deg, double longitude_deg) {
+  const Quadcode node = dataset.FinestContaining(0, latitude_deg, longitude_deg);
+  return BilinearHeight(**dataset.ReadElevation(0, node), node, latitude_deg, longitude_deg);
+}
+// The most that the ground differs across the road.
+double Tilt(const Dataset& dataset) {
+  double most_m = 0;
+  for (double latitude_deg = 10.002; latitude_deg < 10.011; latitude_deg += 0.0003)
+    most_m = std::max(most_m, std::abs(HeightAt(dataset, latitude_deg, 20.0063 - 0.00017) -
+                                       HeightAt(dataset, latitude_deg, 20.0063 + 0.00017)));
+  return most_m;
+}
+
+TEST(VectorLayers, CorrectTheGroundWhereTheyAskForIt) {
+  const std::string folder = PrepareRoad("vectors_road");
+  MustBuild(folder, kFine);
+  const double tilt_m = Tilt(*MustOpen(folder));
+  EXPECT_GT(tilt_m, 2);
+  const double away_m = HeightAt(*MustOpen(folder), 10.005, 20.003);
+  MustBuild(folder, kFine + kRoad);
+  const auto dataset = MustOpen(folder);
+  EXPECT_LT(Tilt(*dataset), 0.25);
+  EXPECT_EQ(HeightAt(*dataset, 10.005, 20.003), away_m);
+  EXPECT_TRUE(VerifyDataset(*dataset).problems.empty());
+}
+
+TEST(VectorLayers, TheGroundFollowsItsRoads) {
+  const std::string folder = PrepareRoad("vectors_road_changed");
+  MustBuild(folder, kFine + Layer("imagery", {"path = \"world.tif\""}));
+  const auto added = Add(folder, kRoad);
+  ASSERT_TRUE(added.ok()) << added.message();
+  const std::string whole = kFine + Layer("imagery", {"path = \"world.tif\""}) + kRoad;
+  ExpectSame(PagesOf(folder), BuiltWhole("vectors_road_whole", folder, whole));
+  // The ground under one end of the road alone.
+  Noise(folder + "/patch.tif", 9, 20, 20, Degrees(20.0058, 10.0123, 0.00006));
+  const std::string patched = "path = \"patch.tif\"\ndatum = \"ellipsoid\"";
+  ASSERT_TRUE(Add(folder, Layer("elevation", {patched})).ok());
+  ExpectSame(
+      PagesOf(folder),
+      BuiltWhole("vectors_road_whole", folder,
+                 Layer("elevation", {"path = \"world.tif\"", "path = \"fine.tif\"\ndatum = \"ellipsoid\"", patched}) +
+                     Layer("imagery", {"path = \"world.tif\""}) + kRoad));
+  std::ofstream(folder + "/road.geojson")
+      << R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":)"
+      << R"({"type":"LineString","coordinates":[[20.002,10.004],[20.011,10.006]]}}]})";
+  ASSERT_TRUE(Refresh(folder).ok());
+  ExpectSame(
+      PagesOf(folder),
+      BuiltWhole("vectors_road_whole", folder,
+                 Layer("elevation", {"path = \"world.tif\"", "path = \"fine.tif\"\ndatum = \"ellipsoid\"", patched}) +
+                     Layer("imagery", {"path = \"world.tif\""}) + kRoad));
+}
+
+TEST(VectorLayers, ACorrectionWithoutItsLayerIsSaid) {
+  const std::string folder = PrepareRoad("vectors_road_homeless");
+  std::string road = kRoad;
+  road.replace(road.find("\"elevation\""), 11, "\"ground\"");
+  const BuildReport report = MustBuild(folder, kFine + road);
+  ASSERT_EQ(report.warnings.size(), 1u);
+  EXPECT_EQ(report.warnings[0].reason, "there is no elevation layer ground that it could correct");
+}
+
 TEST(VectorLayers, MistakesInTheSpecAreNamed) {
   const std::string layer = "[[layer]]\nname = \"v\"\nkind = \"vector\"\n";
   const std::string source = layer + "[[layer.source]]\npath = \"a.csv\"\n";
@@ -191,6 +274,10 @@ TEST(VectorLayers, MistakesInTheSpecAreNamed) {
            {source, "\"features\""},
            {source + "features = \"lake\"\n", ":6: \"features\" must be one of \"other\", \"road\""},
            {source + "features = \"road\"\nresolution_m = 0\n", ":7: \"resolution_m\" must be more than 0"},
+           {source + "features = \"road\"\nwidth_m = 5\n", "one needs the other"},
+           {source + "features = \"road\"\ncorrects = \"elevation\"\n", "one needs the other"},
+           {source + "features = \"road\"\ncorrects = \"elevation\"\nwidth_m = 0\n",
+            ":8: \"width_m\" must be more than 0"},
            {source + "features = \"road\"\nfields = 3\n", ":7: \"fields\" must name some"},
            {source + "features = \"road\"\nfields = { name = 4 }\n", "\"name\" must be the name of a field"},
            {source + "features = \"road\"\nnodata = 3\n", "nodata"},
