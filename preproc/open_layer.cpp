@@ -42,6 +42,7 @@ std::vector<RasterSource*> OpenLayer::pointers() const {
 
 std::vector<SourceRecord> OpenLayer::FeatureRecords() const {
   std::vector<SourceRecord> records;
+  records.reserve(features.size());
   for (const FeatureSource& source : features) records.push_back(source.Record());
   return records;
 }

@@ -76,7 +76,7 @@ bool DatasetFollower::Look() {
   return false;
 }
 
-Status DatasetFollower::Follow(std::shared_ptr<const Dataset> next) {
+Status DatasetFollower::Follow(const std::shared_ptr<const Dataset>& next) {
   if (Status status = dataset_.Fits(*next); !status.ok()) return status;
   const double start_s = clock_.NowSeconds();
   const ChangedPages changed = ChangedPages::Between(*dataset_.current(), *next);

@@ -39,7 +39,7 @@ class DatasetFollower {
 
  private:
   void Run() EXCLUDES_LOCK(mutex_);
-  Status Follow(std::shared_ptr<const Dataset> next);
+  Status Follow(const std::shared_ptr<const Dataset>& next);
   void SetNotices(std::vector<std::string> notices) EXCLUDES_LOCK(mutex_);
 
   Paging& paging_;
