@@ -111,6 +111,35 @@ expect 0 export dataset --layer elevation --out a.tif --extent -10 -10 10 10 --n
 expect 0 export dataset --layer imagery --out a.mbtiles --extent -10 -10 10 10
 [ -s a.mbtiles ] || fail "no tiles"
 
+printf 'lat,lon,name\n47.1,9.5,Here\n47.2,9.6,There\n' >places.csv
+cat >vectors.toml <<TEXT
+[[layer]]
+name = "places"
+kind = "vector"
+  [[layer.source]]
+  path = "places.csv"
+  features = "place"
+TEXT
+expect 0 vectors.toml --out vectors --no-report
+expect 0 query vectors --near 47.1 9.5 --within 100
+grep -q '"name":"Here"' out || fail "query does not find the place: $(cat out)"
+[ "$(wc -l <out)" -eq 1 ] || fail "query finds what is too far away"
+expect 0 query vectors --name nowhere
+[ -s out ] || [ -s err ] && fail "query finds nothing and says something"
+expect 1 query vectors --layer roads
+one_line
+expect 1 query vectors --where 'nonsense ='
+one_line
+expect 1 query dataset --name here
+one_line
+expect 1 query missing
+one_line
+expect 2 query
+expect 2 query vectors --near 91 0
+expect 2 query vectors --within 5
+expect 2 query vectors --class lake
+expect 2 query vectors --extent 3 0 1 1
+
 left=$(find . -name '*.partial' | wc -l)
 [ "$left" -eq 0 ] || fail "$left partial files are left"
 exit $((failures > 0))
