@@ -49,8 +49,8 @@ class TerrainManager::Worker {
   }
 
   void Step() {
+    const GatePass pass(paging_.listing);
     const std::shared_ptr<const ViewParameters> view = channel_->parameters.Get();
-    const GatePass pass(paging_.reading);
     const double now_s = clock_.NowSeconds();
     if (view->number == 0 || IsUpToDate(*view, now_s)) return;
     generation_ = paging_.generation.load(std::memory_order_acquire);

@@ -63,9 +63,7 @@ class Builder {
       for (OpenLayer& layer : layers_) {
         if (layer.spec.kind == LayerKind::kImagery) layer.unmatched = MatchColours(layer.pointers(), **geoid);
       }
-      for (const FeatureSource* source : CorrectAlongLines(layers_, **geoid))
-        Warn(source->spec(),
-             fmt::format("there is no elevation layer {} that it could correct", source->spec().features->corrects));
+      CorrectAlongLines(layers_, **geoid);
       const size_t left_out = excluded_.size();  // what could not be opened is in no page
       const double opened_s = clock_.NowSeconds();
       if (Status status = MakePages(**geoid, **writer); !status.ok()) return status;
@@ -243,7 +241,7 @@ class Builder {
     FeatureIndexMaker index(writer);
     for (size_t i = 0; i < layers_.size(); ++i) {
       if (layers_[i].features.empty()) continue;
-      const std::vector<Feature> features = FeaturesOf(layers_[i].features);
+      const std::vector<Feature> features = TakeFeatures(layers_[i].features);
       LogInfo("layer {}: {} features", layers_[i].spec.name, features.size());
       Status status = MakeVectorLayer(static_cast<int>(i), features, options_.batch_bytes, writer);
       if (status.ok()) status = index.Add(layers_[i].spec.name, features);
@@ -348,7 +346,7 @@ class Builder {
       }
       for (const Unmatched& unmatched : layer.unmatched) Warn(unmatched.source->spec(), unmatched.reason);
       for (const FeatureSource& source : layer.features) {
-        if (!source.remark().empty()) Warn(source.spec(), source.remark());
+        for (const std::string& remark : source.remarks()) Warn(source.spec(), remark);
       }
       records.push_back(layer.Record(geoid));
     }

@@ -12,7 +12,7 @@ bool IsSame(const SourceRecord& a, const SourceRecord& b) {
   if (a.colour_fit.has_value() != b.colour_fit.has_value()) return false;
   if (a.colour_fit && (a.colour_fit->gain != b.colour_fit->gain || a.colour_fit->offset != b.colour_fit->offset))
     return false;
-  return a.settings == b.settings && a.state == b.state;
+  return IsOfSameFiles(a, b);
 }
 
 // Or they share a border, to rounding.
@@ -26,6 +26,10 @@ bool Meet(const GeoBox& a, GeoBox b) {
 }
 
 }  // namespace
+
+bool IsOfSameFiles(const SourceRecord& a, const SourceRecord& b) {
+  return a.settings == b.settings && a.state == b.state;
+}
 
 std::vector<GeoBox> ChangedExtents(std::span<const SourceRecord> before, std::span<const SourceRecord> after,
                                    const std::function<bool(size_t)>& has_voids) {

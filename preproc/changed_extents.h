@@ -13,6 +13,9 @@
 
 namespace belvedere {
 
+// Whether the source was read by the same settings from files that have not changed.
+bool IsOfSameFiles(const SourceRecord& a, const SourceRecord& b);
+
 // Extents of the sources that are in one list and not at the same place in the other: with other settings, files that
 // have changed, colours fitted otherwise, or another order. And of those over them whose voids are filled from what is
 // below, which may change all over such a void: has_voids tells of a place in `after`. Both lists best last.

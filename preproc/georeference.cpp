@@ -1,5 +1,7 @@
 #include "preproc/georeference.h"
 
+#include "runtime/earth/ellipsoid.h"
+
 #include "runtime/base/mutex.h"
 
 #include <gdal_alg.h>
@@ -337,6 +339,14 @@ bool Overlap(const GeoBox& a, const GeoBox& b) {
     if (a.west_deg + turn + kSliver_deg < b.east_deg && b.west_deg + kSliver_deg < a.east_deg + turn) return true;
   }
   return false;
+}
+
+GeoBox Widened(const GeoBox& box, double by_m) {
+  const double north_deg = by_m / MetresPerDegree(0).y;  // where a degree is shortest
+  const double furthest_deg = std::max(std::abs(box.south_deg), std::abs(box.north_deg)) + north_deg;
+  const double metres_east = MetresPerDegree(std::min(furthest_deg, 90.0)).x;
+  const double east_deg = by_m < 180 * metres_east ? by_m / metres_east : 180;
+  return {box.west_deg - east_deg, box.south_deg - north_deg, box.east_deg + east_deg, box.north_deg + north_deg};
 }
 
 bool Covers(const GeoBox& box, double longitude_deg, double latitude_deg) {

@@ -51,6 +51,8 @@ class Georeference {
 
 // Whether two boxes share area, whatever turn their longitudes are given in.
 bool Overlap(const GeoBox& a, const GeoBox& b);
+// The box, wider by so many metres on every side: at least, and all around where it comes to a pole.
+GeoBox Widened(const GeoBox& box, double by_m);
 // Whether a position lies in the box or on its border, whatever its turn.
 bool Covers(const GeoBox& box, double longitude_deg, double latitude_deg);
 

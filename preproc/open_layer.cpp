@@ -6,6 +6,8 @@
 #include <gdal_priv.h>
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 
 namespace belvedere {
@@ -66,29 +68,40 @@ LayerRecord OpenLayer::Record(const Geoid& geoid) const {
   return record;
 }
 
-std::vector<const FeatureSource*> CorrectAlongLines(std::span<OpenLayer> layers, const Geoid& geoid) {
-  std::vector<const FeatureSource*> homeless;
+namespace {
+
+std::shared_ptr<const LineCorrection> CorrectionOf(const OpenLayer& ground, std::span<const OpenLayer> layers,
+                                                   const Geoid& geoid) {
+  auto correction = std::make_shared<LineCorrection>();
+  Composite heights(LayerKind::kElevation, ground.pointers(), geoid);
+  const auto height_at = [&](double latitude_deg, double longitude_deg) {
+    return heights.HeightAt(latitude_deg, longitude_deg, ground.plan);
+  };
   for (const OpenLayer& vectors : layers) {
     for (const FeatureSource& source : vectors.features) {
       const FeatureSelection& selection = *source.spec().features;
-      if (selection.corrects.empty()) continue;
-      const auto ground = std::find_if(layers.begin(), layers.end(), [&](const OpenLayer& layer) {
-        return layer.spec.kind == LayerKind::kElevation && layer.spec.name == selection.corrects;
-      });
-      if (ground == layers.end()) {
-        homeless.push_back(&source);
-        continue;
-      }
-      auto correction = ground->correction ? std::make_shared<LineCorrection>(*ground->correction)
-                                           : std::make_shared<LineCorrection>();
-      Composite heights(LayerKind::kElevation, ground->pointers(), geoid);
-      correction->Add(source.features(), selection.width_m, [&](double latitude_deg, double longitude_deg) {
-        return heights.HeightAt(latitude_deg, longitude_deg, ground->plan);
-      });
-      ground->correction = std::move(correction);
+      if (selection.corrects == ground.spec.name) correction->Add(source.features(), selection.width_m, height_at);
     }
   }
-  return homeless;
+  return correction->empty() ? nullptr : correction;
+}
+
+}  // namespace
+
+void CorrectAlongLines(std::span<OpenLayer> layers, const Geoid& geoid) {
+  std::set<std::string> grounds;
+  for (OpenLayer& layer : layers) {
+    if (layer.spec.kind != LayerKind::kElevation) continue;
+    grounds.insert(layer.spec.name);
+    layer.correction = CorrectionOf(layer, layers, geoid);
+  }
+  for (OpenLayer& vectors : layers) {
+    for (FeatureSource& source : vectors.features) {
+      const std::string& ground = source.spec().features->corrects;
+      if (!ground.empty() && !grounds.contains(ground))
+        source.AddRemark(fmt::format("there is no elevation layer {} that it could correct", ground));
+    }
+  }
 }
 
 std::optional<int> ParentOf(const LayerSpec& derived, std::span<const OpenLayer> layers) {

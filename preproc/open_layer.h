@@ -40,9 +40,9 @@ struct OpenLayer {
   LayerRecord Record(const Geoid& geoid) const;
 };
 
-// What the vector layers among them make of the ground of the elevation layers. Returns the sources whose elevation
-// layer is not there.
-std::vector<const FeatureSource*> CorrectAlongLines(std::span<OpenLayer> layers, const Geoid& geoid);
+// Sets what the vector layers among them make of the ground of the elevation layers. Those without their elevation
+// layer get a remark. REQUIRES: their features are not taken yet.
+void CorrectAlongLines(std::span<OpenLayer> layers, const Geoid& geoid);
 
 // The place among them of the layer that a derived one is made of; nothing where it is not there.
 std::optional<int> ParentOf(const LayerSpec& derived, std::span<const OpenLayer> layers);

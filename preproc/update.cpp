@@ -13,7 +13,6 @@
 #include "runtime/base/iso_time.h"
 #include "runtime/base/log.h"
 #include "runtime/base/mutex.h"
-#include "runtime/earth/units.h"
 #include "runtime/paging/change_writer.h"
 
 #include <algorithm>
@@ -28,16 +27,6 @@
 
 namespace belvedere {
 namespace {
-
-// By so many metres on every side.
-GeoBox Widened(const GeoBox& box, double by_m) {
-  constexpr double kLeastMetresPerDegree = 110574, kNearPole_deg = 89.9;  // of latitude
-  const double reach_deg = by_m / kLeastMetresPerDegree;
-  const double furthest_deg = std::min(std::max(std::abs(box.south_deg), std::abs(box.north_deg)), kNearPole_deg);
-  const double reach_east_deg = reach_deg / std::cos(furthest_deg * kRadiansPerDegree);
-  return {box.west_deg - reach_east_deg, box.south_deg - reach_deg, box.east_deg + reach_east_deg,
-          box.north_deg + reach_deg};
-}
 
 // Pages of the dataset as it was, where nothing touches them.
 class UnchangedPages final : public KnownPages {
@@ -113,9 +102,7 @@ class Updater {
     for (OpenLayer& layer : layers_) {
       if (layer.spec.kind == LayerKind::kImagery) layer.unmatched = MatchColours(layer.pointers(), **geoid);
     }
-    for (const FeatureSource* source : CorrectAlongLines(layers_, **geoid))
-      Warn(NameOf(source->spec()),
-           fmt::format("there is no elevation layer {} that it could correct", source->spec().features->corrects));
+    CorrectAlongLines(layers_, **geoid);
     std::vector<LayerRecord> records;
     records.reserve(layers_.size());
     for (const OpenLayer& layer : layers_) records.push_back(layer.Record(**geoid));
@@ -228,15 +215,12 @@ class Updater {
   }
 
   static bool Has(const std::vector<SourceRecord>& sources, const SourceRecord& wanted) {
-    return std::any_of(sources.begin(), sources.end(), [&](const SourceRecord& other) {
-      return other.settings == wanted.settings && other.state == wanted.state;
-    });
+    return std::any_of(sources.begin(), sources.end(),
+                       [&](const SourceRecord& other) { return IsOfSameFiles(other, wanted); });
   }
 
   static bool AreSourcesAlike(const std::vector<SourceRecord>& before, const std::vector<SourceRecord>& after) {
-    return std::equal(
-        before.begin(), before.end(), after.begin(), after.end(),
-        [](const SourceRecord& a, const SourceRecord& b) { return a.settings == b.settings && a.state == b.state; });
+    return std::equal(before.begin(), before.end(), after.begin(), after.end(), IsOfSameFiles);
   }
 
   // Vector layers are made anew whole where any of their sources changes: only pages that differ are written.
@@ -245,16 +229,22 @@ class Updater {
     for (size_t i = 0; i < layers_.size(); ++i) {
       if (layers_[i].features.empty()) continue;
       const int number = static_cast<int>(i);
-      const bool is_there = i < writer.before().layers().size();
-      const std::vector<Feature> features = FeaturesOf(layers_[i].features);
-      Status status;
-      if (is_there && AreSourcesAlike(writer.before().layers()[i].sources, layers_[i].FeatureRecords())) {
+      const LayerRecord* before = i < writer.before().layers().size() ? &writer.before().layers()[i] : nullptr;
+      const std::vector<SourceRecord> records = layers_[i].FeatureRecords();
+      const bool is_alike = before != nullptr && AreSourcesAlike(before->sources, records);
+      if (is_alike) {
         for (const uint64_t word : writer.before().Nodes(number)) unchanged.Take(number, *Quadcode::FromWord(word));
-      } else {
-        status = MakeVectorLayer(number, features, options_.batch_bytes, writer);
-        if (status.ok()) status = RemoveGone(number, unchanged, writer);
       }
-      if (status.ok() && vectors_change_) status = index.Add(layers_[i].spec.name, features);
+      for (size_t place = 0; place < records.size(); ++place) {
+        if (before != nullptr && Has(before->sources, records[place])) continue;
+        const FeatureSource& source = layers_[i].features[place];
+        for (const std::string& remark : source.remarks()) Warn(NameOf(source.spec()), remark);
+      }
+      if (!vectors_change_) continue;
+      const std::vector<Feature> features = TakeFeatures(layers_[i].features);
+      Status status = is_alike ? Status() : MakeVectorLayer(number, features, options_.batch_bytes, writer);
+      if (status.ok() && !is_alike) status = RemoveGone(number, unchanged, writer);
+      if (status.ok()) status = index.Add(layers_[i].spec.name, features);
       if (!status.ok()) return status;
     }
     if (vectors_change_) return index.Finish();
@@ -298,11 +288,7 @@ class Updater {
   void FindChanged(size_t layer, const LayerRecord* before) {
     for (const auto& source : layers_[layer].sources) {
       const SourceRecord record = source->Record();
-      const bool was_there =
-          before != nullptr &&
-          std::any_of(before->sources.begin(), before->sources.end(), [&](const SourceRecord& other) {
-            return other.settings == record.settings && other.state == record.state;
-          });
+      const bool was_there = before != nullptr && Has(before->sources, record);
       if (!was_there) changed_.push_back(source.get());
     }
   }

@@ -89,6 +89,7 @@ Status DatasetFollower::Follow(const std::shared_ptr<const Dataset>& next) {
   for (auto& [key, page] : made) by_key[key.type][key.node] = std::move(page);
 
   paging_.reading.Close();
+  paging_.listing.Close();
   const double closed_s = clock_.NowSeconds();
   dataset_.Switch(next);
   for (const PageKey& key : paging_.cache.Keys(SharedCache::Which::kAll)) {
@@ -103,6 +104,7 @@ Status DatasetFollower::Follow(const std::shared_ptr<const Dataset>& next) {
   paging_.cache.ForgetFailures();
   paging_.generation.fetch_add(1, std::memory_order_release);
   const double opened_s = clock_.NowSeconds();
+  paging_.listing.Open();
   paging_.reading.Open();
 
   const std::string what = changed.all() ? "all of its pages" : fmt::format("{} of its pages", changed.count());

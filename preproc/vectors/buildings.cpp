@@ -25,13 +25,6 @@ constexpr double kMetresPerFoot = 0.3048;
 constexpr double kMostHeight_m = 2000;  // what is more is a mistake
 constexpr Colour kWalls{214, 206, 196}, kFlatRoof{168, 166, 164}, kTiles{158, 106, 84};
 
-std::string TextOf(const AttributeValue* value) {
-  if (value == nullptr) return {};
-  if (const auto* text = std::get_if<std::string>(value)) return *text;
-  if (const auto* number = std::get_if<int64_t>(value)) return fmt::format("{}", *number);
-  return fmt::format("{}", std::get<double>(*value));
-}
-
 struct Shape {
   double height_m = kUsualHeight_m, base_m = 0, rise_m = 0;
   RoofShape roof = RoofShape::kFlat;
@@ -39,13 +32,17 @@ struct Shape {
 };
 
 Shape ShapeOf(const VectorPage& page, const VectorFeature& feature, const RoofFrame& frame) {
-  const auto length = [&](const char* key) { return ParseLength(TextOf(page.Find(feature, key))); };
+  const auto text = [&](const char* key) {
+    const AttributeValue* value = page.Find(feature, key);
+    return value == nullptr ? std::string() : TextOf(*value);
+  };
+  const auto length = [&](const char* key) { return ParseLength(text(key)); };
   const auto levels = [&](const char* key) {
     const auto number = length(key);
     return number ? std::optional(*number * kMetresPerLevel) : std::nullopt;
   };
   Shape shape;
-  shape.roof = RoofShapeOf(TextOf(page.Find(feature, "roof:shape")));
+  shape.roof = RoofShapeOf(text("roof:shape"));
   shape.rise_m = length("roof:height").value_or(levels("roof:levels").value_or(UsualRise(shape.roof, frame)));
   if (shape.roof == RoofShape::kFlat) shape.rise_m = 0;
   if (const auto height = length("height"))
@@ -56,9 +53,8 @@ Shape ShapeOf(const VectorPage& page, const VectorFeature& feature, const RoofFr
   shape.base_m = length("min_height").value_or(levels("building:min_level").value_or(0));
   if (!(shape.base_m >= 0 && shape.base_m < shape.height_m)) shape.base_m = 0;
   shape.rise_m = std::clamp(shape.rise_m, 0.0, shape.height_m - shape.base_m);
-  shape.walls = ParseColourName(TextOf(page.Find(feature, "building:colour"))).value_or(kWalls);
-  shape.top = ParseColourName(TextOf(page.Find(feature, "roof:colour")))
-                  .value_or(shape.roof == RoofShape::kFlat ? kFlatRoof : kTiles);
+  shape.walls = ParseColourName(text("building:colour")).value_or(kWalls);
+  shape.top = ParseColourName(text("roof:colour")).value_or(shape.roof == RoofShape::kFlat ? kFlatRoof : kTiles);
   return shape;
 }
 

@@ -15,7 +15,6 @@
 namespace belvedere {
 
 enum class GridAxis : uint8_t { kX, kY };
-using FeatureParts = std::vector<FeaturePart>;
 
 // What lies below `at`, west or south, and what lies above it. A ring that is cut follows the line on both sides
 // (Sutherland, Hodgman: Reentrant polygon clipping, 1974).

@@ -14,23 +14,10 @@ namespace {
 
 constexpr int kToleranceLog2 = 11;  // of the side of a quadnode
 constexpr int kGridLog2 = 14;
-constexpr int64_t kAround = int64_t{1} << 32;
 
-struct Extent {
-  int64_t west = INT64_MAX, south = INT64_MAX, east = INT64_MIN, north = INT64_MIN;
-  int64_t size() const { return std::max(east - west, north - south); }
-};
-
-Extent ExtentOf(const FeatureParts& parts) {
-  Extent extent;
-  for (const FeaturePart& part : parts) {
-    for (const GridPlace& place : part) {
-      extent.west = std::min(extent.west, place.x);
-      extent.east = std::max(extent.east, place.x);
-      extent.south = std::min(extent.south, place.y);
-      extent.north = std::max(extent.north, place.y);
-    }
-  }
+GridExtent ExtentOf(const FeatureParts& parts) {
+  GridExtent extent;
+  extent.Add(parts);
   return extent;
 }
 
@@ -50,9 +37,8 @@ std::array<std::vector<Piece>, 2> Divide(const std::vector<Piece>& pieces, GridA
   std::array<std::vector<Piece>, 2> out;
   for (const Piece& piece : pieces) {
     if (StaysWhole(piece)) {
-      const Extent extent = ExtentOf(piece.parts);
-      const int64_t middle = axis == GridAxis::kX ? (extent.west + extent.east) / 2 : (extent.south + extent.north) / 2;
-      out[middle >= at].push_back(piece);
+      const GridPlace middle = ExtentOf(piece.parts).middle();
+      out[(axis == GridAxis::kX ? middle.x : middle.y) >= at].push_back(piece);
       continue;
     }
     std::array<FeatureParts, 2> sides = CutInTwo(piece.parts, piece.feature->shape, axis, at);
@@ -210,10 +196,10 @@ class Cutter {
 std::vector<Piece> PiecesOf(std::span<const Feature> features) {
   std::vector<Piece> pieces;
   for (const Feature& feature : features) {
-    const Extent extent = ExtentOf(feature.parts);
+    const GridExtent extent = ExtentOf(feature.parts);
     // What is on the wrong side of the Earth falls away when it is divided among the quadtrees.
-    for (const int64_t shift : {int64_t{0}, kAround, -kAround}) {
-      if (extent.west + shift >= kAround || extent.east + shift < 0) continue;
+    for (const int64_t shift : {int64_t{0}, kUnitsAround, -kUnitsAround}) {
+      if (extent.west + shift >= kUnitsAround || extent.east + shift < 0) continue;
       Piece piece{&feature, extent.size(), feature.parts};
       for (FeaturePart& part : piece.parts) {
         for (GridPlace& place : part) place.x += shift;

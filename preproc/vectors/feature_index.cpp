@@ -1,7 +1,7 @@
 #include "preproc/vectors/feature_index.h"
 
 #include "preproc/gdal_errors.h"
-#include "runtime/earth/units.h"
+#include "preproc/georeference.h"
 #include "runtime/paging/dataset_store.h"
 #include "runtime/paging/dataset_writer.h"
 
@@ -20,9 +20,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kGridUnitsPerDegree = (1 << kGridBitsPerTree) / kTreeDegrees;
-constexpr double kMetresPerDegree = 110574;  // the shortest degree of latitude there is
-
 struct ResultCloser {
   GDALDataset* file;
   void operator()(OGRLayer* layer) const { file->ReleaseResultSet(layer); }
@@ -30,9 +27,7 @@ struct ResultCloser {
 
 template <typename Line>
 void SetPoints(const FeaturePart& part, Line& line) {
-  for (const GridPlace& place : part)
-    line.addPoint(static_cast<double>(place.x) / kGridUnitsPerDegree - 180,
-                  static_cast<double>(place.y) / kGridUnitsPerDegree - 90);
+  for (const GridPlace& place : part) line.addPoint(place.longitude_deg(), place.latitude_deg());
 }
 
 // Rings are one polygon each with the holes in it, as OGR finds them.
@@ -62,9 +57,7 @@ std::unique_ptr<OGRGeometry> GeometryOf(const Feature& feature) {
   }
   auto points = std::make_unique<OGRMultiPoint>();
   for (const GridPlace& place : feature.parts.front()) {
-    OGRPoint point;
-    point.setX(static_cast<double>(place.x) / kGridUnitsPerDegree - 180);
-    point.setY(static_cast<double>(place.y) / kGridUnitsPerDegree - 90);
+    const OGRPoint point(place.longitude_deg(), place.latitude_deg());
     points->addGeometry(&point);
   }
   if (feature.parts.front().size() > 1) return points;
@@ -107,16 +100,6 @@ std::string InBoxes(const std::string& table, const GeoBox& box) {
   return out + ")";
 }
 
-// What could be within the distance.
-GeoBox BoxAround(const FeatureQuery::Near& near) {
-  const double reach_deg = near.within_m / kMetresPerDegree;
-  const double furthest_deg = std::min(90.0, std::abs(near.latitude_deg) + reach_deg);
-  const double narrow = std::cos(furthest_deg * kRadiansPerDegree);
-  const double around_deg = narrow * 180 > reach_deg ? reach_deg / narrow : 180;
-  return {near.longitude_deg - around_deg, near.latitude_deg - reach_deg, near.longitude_deg + around_deg,
-          near.latitude_deg + reach_deg};
-}
-
 std::string DistanceTo(const FeatureQuery::Near& near) {
   std::string out;
   for (const double shift : {0.0, 360.0, -360.0}) {
@@ -132,7 +115,9 @@ std::string QuestionTo(const std::string& table, const FeatureQuery& query) {
   if (query.name) conditions.push_back("instr(lower(name), lower(" + Text(*query.name) + ")) > 0");
   if (query.box) conditions.push_back(InBoxes(table, *query.box));
   if (query.near) {
-    conditions.push_back(InBoxes(table, BoxAround(*query.near)));
+    conditions.push_back(InBoxes(table, Widened({query.near->longitude_deg, query.near->latitude_deg,
+                                                 query.near->longitude_deg, query.near->latitude_deg},
+                                                query.near->within_m)));
     conditions.push_back(fmt::format("{} <= {:.6f}", DistanceTo(*query.near), query.near->within_m));
   }
   if (!query.where.empty()) conditions.push_back("(" + query.where + ")");
@@ -196,8 +181,9 @@ Status FeatureIndexWriter::Add(const std::string& layer, std::span<const Feature
   CPLStringList options(std::vector<const char*>{"LAUNDER=NO", "GEOMETRY_NAME=geometry", "FID=rowid_", nullptr}.data());
   OGRLayer* table = file_->CreateLayer(layer.c_str(), &geographic, wkbUnknown, options.List());
   const auto failed = [&] {
-    return Status::Error("{}: the index of features cannot be written: {}; free some space and build again", path_,
-                         errors.first());
+    return Status::Error(
+        "{}: the index of layer {} cannot be written: {}; see that there is space, and no other layer of a like name",
+        path_, layer, errors.first());
   };
   if (table == nullptr) return failed();
   OGRFieldDefn of("class", OFTString), name("name", OFTString), importance("importance", OFTReal),

@@ -50,7 +50,7 @@ class FeatureIndexWriter {
 struct FeatureQuery {
   std::string layer{};  // empty: all
   std::optional<FeatureClass> of{};
-  std::optional<std::string> name{};  // a part of it, in capitals or not
+  std::optional<std::string> name{};  // a part of it; of A to Z, in capitals or not
   std::optional<GeoBox> box{};        // degrees; over 180 E where east is over 180
   // Degrees; the nearest come first, none further than so many metres.
   struct Near {

@@ -2,6 +2,7 @@
 
 #include "preproc/gdal_errors.h"
 #include "preproc/source_settings.h"
+#include "runtime/earth/ellipsoid.h"
 
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
@@ -17,9 +18,6 @@
 namespace belvedere {
 namespace {
 
-constexpr double kGridUnitsPerDegree = (1 << kGridBitsPerTree) / kTreeDegrees;
-constexpr int64_t kGridUnitsAround = int64_t{1} << 32;
-constexpr double kMetresPerDegree = 111320;
 constexpr int kMostDegreesOfArc = 4;  // a step of a curve that becomes a line
 
 struct DatasetCloser {
@@ -78,8 +76,8 @@ class Shaper {
       GridPlace place = PlaceOf(line.getX(i), line.getY(i));
       if (!places.empty()) {
         // The short way round.
-        while (place.x - places.back().x > kGridUnitsAround / 2) place.x -= kGridUnitsAround;
-        while (places.back().x - place.x > kGridUnitsAround / 2) place.x += kGridUnitsAround;
+        while (place.x - places.back().x > kUnitsAround / 2) place.x -= kUnitsAround;
+        while (places.back().x - place.x > kUnitsAround / 2) place.x += kUnitsAround;
       }
       if (places.empty() || places.back() != place) places.push_back(place);
     }
@@ -92,9 +90,9 @@ class Shaper {
       is_good_ = false;
       return {};
     }
-    const int64_t y = std::llround((latitude_deg + 90) * kGridUnitsPerDegree);
-    return {std::llround((longitude_deg + 180) * kGridUnitsPerDegree),
-            std::clamp(y, int64_t{0}, int64_t{kGridNorthPole})};
+    GridPlace place = GridPlace::At(latitude_deg, longitude_deg);
+    place.y = std::clamp(place.y, int64_t{0}, int64_t{kGridNorthPole});
+    return place;
   }
 
   bool is_good_ = true;
@@ -107,7 +105,7 @@ double LengthAround(const Feature& feature) {
       around +=
           std::hypot(static_cast<double>(part[i].x - part[i - 1].x), static_cast<double>(part[i].y - part[i - 1].y));
   }
-  return around / kGridUnitsPerDegree;
+  return around / kUnitsPerDegree;
 }
 
 // The table of a source with what is taken of it.
@@ -157,7 +155,7 @@ class Table {
       ReadAttributes(*row, feature);
       feature.id = static_cast<uint32_t>(features.size());
       feature.of = selection_.of;
-      feature.resolution = selection_.resolution_m / kMetresPerDegree * kGridUnitsPerDegree;
+      feature.resolution = selection_.resolution_m / MetresPerDegree(0).x * kUnitsPerDegree;
       feature.importance = ImportanceOf(feature);
       features.push_back(std::move(feature));
     }
@@ -223,12 +221,6 @@ class Table {
       found.insert(std::move(node));
     }
     feature.attributes.assign(found.begin(), found.end());
-  }
-
-  static std::string TextOf(const AttributeValue& value) {
-    if (const auto* text = std::get_if<std::string>(&value)) return *text;
-    if (const auto* number = std::get_if<int64_t>(&value)) return fmt::format("{}", *number);
-    return fmt::format("{}", std::get<double>(value));
   }
 
   double ImportanceOf(const Feature& feature) const {
@@ -301,7 +293,7 @@ Result<FeatureSource> FeatureSource::Read(const SourceSpec& spec) {
   if (source.features_.empty())
     return Status::Error("it has no such feature with a place{}",
                          unusable > 0 ? fmt::format("; of {} it is missing or not on the Earth", unusable) : "");
-  if (unusable > 0) source.remark_ = fmt::format("{} features have no place on the Earth and are left out", unusable);
+  if (unusable > 0) source.AddRemark(fmt::format("{} features have no place on the Earth and are left out", unusable));
   source.record_.path = spec.written_path;
   source.record_.extent = ExtentOf(source.features_);
   source.record_.settings = SettingsToJson(spec);
@@ -315,19 +307,9 @@ Result<FeatureSource> FeatureSource::Read(const SourceSpec& spec) {
 }
 
 GeoBox ExtentOf(std::span<const Feature> features) {
-  int64_t west = INT64_MAX, south = INT64_MAX, east = INT64_MIN, north = INT64_MIN;
-  for (const Feature& feature : features) {
-    for (const FeaturePart& part : feature.parts) {
-      for (const GridPlace& place : part) {
-        west = std::min(west, place.x);
-        east = std::max(east, place.x);
-        south = std::min(south, place.y);
-        north = std::max(north, place.y);
-      }
-    }
-  }
-  const auto degrees = [](int64_t units) { return static_cast<double>(units) / kGridUnitsPerDegree; };
-  return {degrees(west) - 180, degrees(south) - 90, degrees(east) - 180, degrees(north) - 90};
+  GridExtent extent;
+  for (const Feature& feature : features) extent.Add(feature.parts);
+  return extent.box();
 }
 
 std::map<std::string, std::string> ParseTags(std::string_view text) {

@@ -17,6 +17,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace belvedere {
@@ -28,9 +29,11 @@ class FeatureSource {
   static Result<FeatureSource> Read(const SourceSpec& spec);
 
   const SourceSpec& spec() const { return spec_; }
-  const std::vector<Feature>& features() const { return features_; }  // ids from 0
-  // What the user should know of it; empty as a rule.
-  const std::string& remark() const { return remark_; }
+  const std::vector<Feature>& features() const { return features_; }  // ids from 0; none once they are taken
+  std::vector<Feature> TakeFeatures() { return std::exchange(features_, {}); }
+  // What the user should know of it; none as a rule.
+  const std::vector<std::string>& remarks() const { return remarks_; }
+  void AddRemark(std::string remark) { remarks_.push_back(std::move(remark)); }
   SourceRecord Record() const { return record_; }
 
  private:
@@ -38,7 +41,7 @@ class FeatureSource {
 
   SourceSpec spec_;
   std::vector<Feature> features_;
-  std::string remark_;
+  std::vector<std::string> remarks_;
   SourceRecord record_;
 };
 

@@ -1,7 +1,7 @@
 #include "preproc/vectors/footprint.h"
 
+#include "preproc/vectors/feature.h"
 #include "runtime/earth/ellipsoid.h"
-#include "runtime/earth/units.h"
 
 #include <geos_c.h>
 #include <glm/geometric.hpp>
@@ -31,14 +31,6 @@ struct GeometryCloser {
   void operator()(GEOSGeometry* geometry) const { GEOSGeom_destroy_r(Context(), geometry); }
 };
 using Geometry = std::unique_ptr<GEOSGeometry, GeometryCloser>;
-
-// Metres of a degree east and north at a latitude, by the ellipsoid's radii of curvature there.
-glm::dvec2 MetresPerDegree(double latitude_deg) {
-  const double sine = std::sin(latitude_deg * kRadiansPerDegree);
-  const double w = std::sqrt(1 - kEccentricitySquared * sine * sine);
-  return kRadiansPerDegree * glm::dvec2(kEquatorialRadius_m / w * std::cos(latitude_deg * kRadiansPerDegree),
-                                        kEquatorialRadius_m * (1 - kEccentricitySquared) / (w * w * w));
-}
 
 Geometry LinearRing(const Ring& ring) {
   GEOSCoordSequence* places = GEOSCoordSeq_create_r(Context(), static_cast<unsigned>(ring.size() + 1), 2);
@@ -197,8 +189,7 @@ std::optional<Footprint> FootprintOf(const VectorPage& page, const VectorFeature
   Footprint out;
   out.anchor = {static_cast<uint32_t>(int64_t{corner.x} + middle_x),
                 static_cast<uint32_t>(std::clamp<int64_t>(int64_t{corner.y} + middle_y, 0, kGridNorthPole))};
-  const double degrees = kTreeDegrees / (1 << kGridBitsPerTree);
-  const glm::dvec2 metres = MetresPerDegree(out.anchor.latitude_deg()) * degrees;
+  const glm::dvec2 metres = MetresPerDegree(out.anchor.latitude_deg()) / kUnitsPerDegree;
   std::vector<Ring> rings;
   for (uint32_t p = 0; p < feature.parts; ++p) {
     const VectorPage::Part& part = page.parts[feature.first_part + p];

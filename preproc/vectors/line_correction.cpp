@@ -1,12 +1,14 @@
 #include "preproc/vectors/line_correction.h"
 
 #include "runtime/earth/ellipsoid.h"
-#include "runtime/earth/units.h"
 #include "runtime/paging/page.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace belvedere {
@@ -14,17 +16,11 @@ namespace {
 
 constexpr int kCellLog2 = 18;     // of grid units: 0.022 degrees
 constexpr int kSmoothedOver = 4;  // heights on each side
-constexpr double kUnitsPerDegree = (1 << kGridBitsPerTree) / kTreeDegrees;
-// The Earth's mean radius will do for widths.
-constexpr double kMetresPerUnit = kEquatorialRadius_m * kRadiansPerDegree / kUnitsPerDegree;
 
-double LatitudeOf(int64_t y) {
-  return static_cast<double>(y) / kUnitsPerDegree - 90;
-}
-// How many metres a grid unit is to the east.
-double MetresEast(int64_t y) {
-  constexpr double kNarrowest = 1e-3;  // beside a pole
-  return kMetresPerUnit * std::max(std::cos(LatitudeOf(y) * kRadiansPerDegree), kNarrowest);
+// Metres of a grid unit east and north; beside a pole, where none is left east, a little of one.
+glm::dvec2 MetresPerUnit(int64_t y) {
+  constexpr double kNearPole_deg = 89.9;
+  return MetresPerDegree(std::clamp(GridPlace{0, y}.latitude_deg(), -kNearPole_deg, kNearPole_deg)) / kUnitsPerDegree;
 }
 
 uint64_t CellOf(int64_t column, int64_t row) {
@@ -37,8 +33,7 @@ FeaturePart Divided(const FeaturePart& line, double distance_m) {
   FeaturePart out{line.front()};
   for (size_t i = 1; i < line.size(); ++i) {
     const GridPlace a = line[i - 1], b = line[i];
-    const double length_m =
-        std::hypot(static_cast<double>(b.x - a.x) * MetresEast(a.y), static_cast<double>(b.y - a.y) * kMetresPerUnit);
+    const double length_m = glm::length(MetresPerUnit(a.y) * glm::dvec2(b.x - a.x, b.y - a.y));
     const auto steps = static_cast<int64_t>(std::max(1.0, std::ceil(length_m / distance_m)));
     for (int64_t step = 1; step <= steps; ++step)
       out.push_back({a.x + (b.x - a.x) * step / steps, a.y + (b.y - a.y) * step / steps});
@@ -88,7 +83,7 @@ void LineCorrection::AddLine(const FeaturePart& line, bool falls, double width_m
   std::vector<double> heights_m;
   heights_m.reserve(places.size());
   for (const GridPlace& place : places) {
-    const GridPoint point{static_cast<uint32_t>(place.x), static_cast<uint32_t>(place.y)};
+    const GridPoint point{static_cast<uint32_t>(place.x), static_cast<uint32_t>(place.y)};  // of its own turn
     heights_m.push_back(ground(point.latitude_deg(), point.longitude_deg()));
   }
   heights_m = falls ? Falling(std::move(heights_m)) : Smoothed(heights_m);
@@ -98,64 +93,76 @@ void LineCorrection::AddLine(const FeaturePart& line, bool falls, double width_m
   }
 }
 
+GridExtent LineCorrection::ReachOf(const Segment& segment) {
+  const auto& [a, b, a_m, b_m, width_m] = segment;
+  const glm::dvec2 metres = glm::min(MetresPerUnit(a.y), MetresPerUnit(b.y));
+  const auto x = static_cast<int64_t>(width_m / metres.x) + 1, y = static_cast<int64_t>(width_m / metres.y) + 1;
+  return {std::min(a.x, b.x) - x, std::min(a.y, b.y) - y, std::max(a.x, b.x) + x, std::max(a.y, b.y) + y};
+}
+
 void LineCorrection::Index(size_t segment) {
-  const auto& [a, b, a_m, b_m, width_m] = segments_[segment];
-  const auto reach_x = static_cast<int64_t>(width_m / std::min(MetresEast(a.y), MetresEast(b.y))) + 1;
-  const auto reach_y = static_cast<int64_t>(width_m / kMetresPerUnit) + 1;
-  for (int64_t row = (std::min(a.y, b.y) - reach_y) >> kCellLog2; row <= (std::max(a.y, b.y) + reach_y) >> kCellLog2;
-       ++row) {
-    for (int64_t column = (std::min(a.x, b.x) - reach_x) >> kCellLog2;
-         column <= (std::max(a.x, b.x) + reach_x) >> kCellLog2; ++column)
+  const GridExtent reach = ReachOf(segments_[segment]);
+  for (int64_t row = reach.south >> kCellLog2; row <= reach.north >> kCellLog2; ++row) {
+    for (int64_t column = reach.west >> kCellLog2; column <= reach.east >> kCellLog2; ++column)
       cells_[CellOf(column, row)].push_back(static_cast<uint32_t>(segment));
+  }
+}
+
+// In their order, so that of two that are as near the same one counts in every page.
+std::vector<uint32_t> LineCorrection::SegmentsNear(const PostRaster& posts) const {
+  const int64_t side = (kElevationSide - 1) * posts.spacing;
+  std::vector<uint32_t> near;
+  for (int64_t row = posts.south >> kCellLog2; row <= (posts.south + side) >> kCellLog2; ++row) {
+    for (int64_t column = posts.west >> kCellLog2; column <= (posts.west + side) >> kCellLog2; ++column) {
+      const auto cell = cells_.find(CellOf(column, row));
+      if (cell != cells_.end()) near.insert(near.end(), cell->second.begin(), cell->second.end());
+    }
+  }
+  std::sort(near.begin(), near.end());
+  near.erase(std::unique(near.begin(), near.end()), near.end());
+  return near;
+}
+
+void LineCorrection::Reach(const Segment& segment, const PostRaster& posts, std::vector<Nearest>& nearest) {
+  const auto& [a, b, a_m, b_m, width_m] = segment;
+  const GridExtent reach = ReachOf(segment);
+  // The short way round the Earth.
+  const int64_t turn = (posts.west - a.x + kUnitsAround / 2) >> 32;
+  const int64_t west = posts.west - turn * kUnitsAround;
+  const auto first = [&](int64_t from, int64_t edge) { return std::max<int64_t>((from - edge) / posts.spacing, 0); };
+  const auto last = [&](int64_t to, int64_t edge) {
+    return std::min<int64_t>((to - edge) / posts.spacing, kElevationSide - 1);
+  };
+  for (int64_t row = first(reach.south, posts.south); row <= last(reach.north, posts.south); ++row) {
+    const int64_t y = posts.south + row * posts.spacing;
+    if (y < 0 || y > int64_t{kGridNorthPole}) continue;
+    const glm::dvec2 metres = MetresPerUnit(y);
+    const glm::dvec2 along = metres * glm::dvec2(b.x - a.x, b.y - a.y);
+    const double squared = glm::dot(along, along);
+    for (int64_t column = first(reach.west, west); column <= last(reach.east, west); ++column) {
+      const glm::dvec2 at = metres * glm::dvec2(west + column * posts.spacing - a.x, y - a.y);
+      const double t = squared > 0 ? std::clamp(glm::dot(at, along) / squared, 0.0, 1.0) : 0.0;
+      const double distance_m = glm::distance(at, t * along);
+      Nearest& post = nearest[static_cast<size_t>(row * kElevationSide + column)];
+      if (distance_m < width_m && distance_m < post.distance_m)
+        post = {distance_m, a_m + t * (b_m - a_m), ShareAt(distance_m, width_m)};
+    }
   }
 }
 
 void LineCorrection::Apply(Quadcode node, std::vector<int32_t>& heights_mm) const {
   const int64_t spacing = node.PostSpacing();
-  if (empty() || static_cast<double>(spacing) * kMetresPerUnit > widest_m_) return;
-  const int64_t west = int64_t{node.SouthWest().x} - kApron * spacing,
-                south = int64_t{node.SouthWest().y} - kApron * spacing;
-  const int64_t side = (kElevationSide - 1) * spacing;
-  std::vector<uint32_t> near;
-  for (int64_t row = south >> kCellLog2; row <= (south + side) >> kCellLog2; ++row) {
-    for (int64_t column = west >> kCellLog2; column <= (west + side) >> kCellLog2; ++column) {
-      const auto cell = cells_.find(CellOf(column, row));
-      if (cell != cells_.end()) near.insert(near.end(), cell->second.begin(), cell->second.end());
-    }
-  }
-  // In their order, so that of two that are as near the same one counts in every page.
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
-  std::vector<double> distances_m(heights_mm.size(), std::numeric_limits<double>::infinity());
-  std::vector<std::pair<double, double>> lines(heights_mm.size());  // height and share of the nearest
-  for (const uint32_t number : near) {
-    const auto& [a, b, a_m, b_m, width_m] = segments_[number];
-    if (static_cast<double>(spacing) * kMetresPerUnit > width_m) continue;
-    const auto reach_y = static_cast<int64_t>(width_m / kMetresPerUnit) + 1;
-    const int64_t first = std::max<int64_t>((std::min(a.y, b.y) - reach_y - south) / spacing, 0);
-    const int64_t last = std::min<int64_t>((std::max(a.y, b.y) + reach_y - south) / spacing, kElevationSide - 1);
-    for (int64_t row = first; row <= last; ++row) {
-      const int64_t y = south + row * spacing;
-      if (y < 0 || y > int64_t{kGridNorthPole}) continue;
-      const double east_m = MetresEast(y);
-      const double along_x = static_cast<double>(b.x - a.x) * east_m,
-                   along_y = static_cast<double>(b.y - a.y) * kMetresPerUnit;
-      const double squared = along_x * along_x + along_y * along_y;
-      for (int64_t column = 0; column < kElevationSide; ++column) {
-        // The short way round the Earth.
-        const auto offset = static_cast<int32_t>(static_cast<uint32_t>(west + column * spacing - a.x));
-        const double x = offset * east_m, z = static_cast<double>(y - a.y) * kMetresPerUnit;
-        const double t = squared > 0 ? std::clamp((x * along_x + z * along_y) / squared, 0.0, 1.0) : 0.0;
-        const double distance_m = std::hypot(x - t * along_x, z - t * along_y);
-        const auto at = static_cast<size_t>(row * kElevationSide + column);
-        if (distance_m >= width_m || distance_m >= distances_m[at]) continue;
-        distances_m[at] = distance_m;
-        lines[at] = {a_m + t * (b_m - a_m), ShareAt(distance_m, width_m)};
-      }
-    }
+  // As at the equator, so that all pages of a level are corrected by the same lines.
+  const double spacing_m = static_cast<double>(spacing) * MetresPerDegree(0).y / kUnitsPerDegree;
+  if (empty() || spacing_m > widest_m_) return;
+  const PostRaster posts{int64_t{node.SouthWest().x} - kApron * spacing, int64_t{node.SouthWest().y} - kApron * spacing,
+                         spacing};
+  std::vector<Nearest> nearest(heights_mm.size());
+  for (const uint32_t number : SegmentsNear(posts)) {
+    if (spacing_m <= segments_[number].width_m) Reach(segments_[number], posts, nearest);
   }
   for (size_t at = 0; at < heights_mm.size(); ++at) {
-    const auto& [height_m, share] = lines[at];
+    const auto& [distance_m, height_m, share] = nearest[at];
     if (share <= 0) continue;
     const double was_m = heights_mm[at] * kMetresPerMillimetre;
     heights_mm[at] = static_cast<int32_t>(std::lrint((was_m + share * (height_m - was_m)) / kMetresPerMillimetre));

@@ -16,6 +16,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -41,6 +42,18 @@ class LineCorrection {
     double a_m = 0, b_m = 0;  // heights
     double width_m = 0;
   };
+  // Posts of a page with its apron, grid units.
+  struct PostRaster {
+    int64_t west = 0, south = 0, spacing = 0;
+  };
+  // Of a post: the line that is nearest.
+  struct Nearest {
+    double distance_m = std::numeric_limits<double>::infinity();
+    double height_m = 0, share = 0;
+  };
+  static GridExtent ReachOf(const Segment& segment);
+  std::vector<uint32_t> SegmentsNear(const PostRaster& posts) const;
+  static void Reach(const Segment& segment, const PostRaster& posts, std::vector<Nearest>& nearest);
   void AddLine(const FeaturePart& line, bool falls, double width_m, const Ground& ground);
   void Index(size_t segment);
 

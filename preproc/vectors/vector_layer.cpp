@@ -7,12 +7,12 @@
 
 namespace belvedere {
 
-std::vector<Feature> FeaturesOf(std::span<const FeatureSource> sources) {
+std::vector<Feature> TakeFeatures(std::span<FeatureSource> sources) {
   std::vector<Feature> features;
-  for (const FeatureSource& source : sources) {
-    for (const Feature& feature : source.features()) {
-      features.push_back(feature);
-      features.back().id = static_cast<uint32_t>(features.size() - 1);
+  for (FeatureSource& source : sources) {
+    for (Feature& feature : source.TakeFeatures()) {
+      feature.id = static_cast<uint32_t>(features.size());
+      features.push_back(std::move(feature));
     }
   }
   return features;

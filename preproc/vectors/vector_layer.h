@@ -16,8 +16,8 @@
 
 namespace belvedere {
 
-// Of all sources, one after the other; ids count on.
-std::vector<Feature> FeaturesOf(std::span<const FeatureSource> sources);
+// Those of all sources, one after the other; ids count on. The sources have none any more.
+std::vector<Feature> TakeFeatures(std::span<FeatureSource> sources);
 
 // number: the layer's in the dataset. batch_bytes: of a transaction.
 Status MakeVectorLayer(int number, std::span<const Feature> features, int64_t batch_bytes, DatasetWriter& writer);

@@ -1,7 +1,7 @@
 // Station: all the rooms, started and stopped in order.
 //
-//   start   dataset -> layers -> paging -> servers -> object table and receivers -> render thread -> views
-//   stop    views' managers -> render thread -> channels -> receivers -> servers -> paging -> dataset
+//   start   dataset -> layers -> paging -> servers -> follower -> object table and receivers -> render thread -> views
+//   stop    views' managers -> render thread -> channels -> receivers -> follower -> servers -> paging -> dataset
 //
 // A dataset that is changed or built anew on disk is followed while the station runs (dataset_follower.h).
 //

@@ -3,6 +3,9 @@
 // Those who work pass through with a GatePass. Whoever closes the gate waits until all who are inside are gone; who
 // comes meanwhile waits until it is opened. A pass is not taken while one is held by the same thread.
 //
+// A readers-writer lock that prefers the writer: std::shared_mutex here prefers readers, so that servers which are
+// never idle would keep a writer waiting for ever.
+//
 // Threads: any; one closes at a time.
 #pragma once
 

@@ -39,6 +39,13 @@ LevelAxes LevelAxesAt(double latitude_deg, double longitude_deg) {
   return {east, north, UpAt(latitude_deg, longitude_deg)};
 }
 
+glm::dvec2 MetresPerDegree(double latitude_deg) {
+  const double sine = std::sin(latitude_deg * kRadiansPerDegree), cosine = std::cos(latitude_deg * kRadiansPerDegree);
+  const double w = std::sqrt(1 - kEccentricitySquared * sine * sine);
+  const double meridian_m = kEquatorialRadius_m * (1 - kEccentricitySquared) / (w * w * w);
+  return kRadiansPerDegree * glm::dvec2(kEquatorialRadius_m / w * cosine, meridian_m);
+}
+
 double HorizonDistance(double height_m) {
   const double height = std::max(height_m, 0.0);
   return std::sqrt(height * (2.0 * kPolarRadius_m + height));

@@ -7,6 +7,7 @@
 
 #include "runtime/earth/units.h"
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 namespace belvedere {
@@ -27,6 +28,9 @@ struct LevelAxes {
   glm::dvec3 east, north, up;
 };
 LevelAxes LevelAxesAt(double latitude_deg, double longitude_deg);
+
+// Metres of a degree east, x, and north, y, on the ellipsoid: its radii of curvature there.
+glm::dvec2 MetresPerDegree(double latitude_deg);
 
 // Distance in metres from an eye to the horizon of a sphere of the polar radius; 0 at or under the surface.
 double HorizonDistance(double height_m);

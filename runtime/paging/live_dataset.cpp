@@ -17,6 +17,18 @@ std::vector<LayerRecord> AsDeepAsCanBe(std::vector<LayerRecord> layers) {
   return layers;
 }
 
+// What the pages of the layer are shown by, besides their kind.
+std::string MeaningOf(const LayerRecord& layer) {
+  std::string meaning = layer.property ? store::PropertyToJson(*layer.property) : std::string();
+  if (layer.step)
+    meaning += fmt::format("{} {} {}", layer.step->layer, layer.step->utc_s, static_cast<int>(layer.step->repeats));
+  return meaning;
+}
+
+bool IsSameLayer(const LayerRecord& a, const LayerRecord& b) {
+  return a.name == b.name && a.kind == b.kind && MeaningOf(a) == MeaningOf(b);
+}
+
 }  // namespace
 
 ChangedPages ChangedPages::Between(const Dataset& before, const Dataset& after) {
@@ -82,11 +94,9 @@ std::shared_ptr<const Dataset> LiveDataset::current() const {
 
 Status LiveDataset::Fits(const Dataset& next) const {
   for (size_t i = 0; i < layers_.size(); ++i) {
-    const LayerRecord& layer = layers_[i];
-    if (i < next.layers().size() && next.layers()[i].name == layer.name && next.layers()[i].kind == layer.kind)
-      continue;
-    return Status::Error("{} was built anew and has no layer {} in its place; start again to see it", path_,
-                         layer.name);
+    if (i < next.layers().size() && IsSameLayer(layers_[i], next.layers()[i])) continue;
+    return Status::Error("{} was built anew and has no layer {} as it was in its place; start again to see it", path_,
+                         layers_[i].name);
   }
   return {};
 }

@@ -1,8 +1,8 @@
 // LiveDataset: a dataset that may be changed or built anew while it is read: it answers from the one that it was last
 // given, in place of the one before, without a pause.
 //
-// Its layers are those it started with, by number, name and kind; all may be as deep as layers can be. What is opened
-// next has to have them too, and may have more, which stay unknown here.
+// Its layers are those it started with, by number, name, kind and meaning; all may be as deep as layers can be. What is
+// opened next has to have them too, and may have more, which stay unknown here.
 //
 // Threads: any; Switch by one at a time. What a span of Nodes names stays until the next Switch.
 #pragma once

@@ -38,9 +38,9 @@ struct Paging {
   const LayerTable layers;
   SharedCache cache;
   std::vector<std::unique_ptr<RequestQueue>> queues;  // one a data type
-  // Servers read, and terrain managers make a list, while they have a pass; whoever changes what pages are made of
-  // closes it meanwhile.
-  Gate reading;
+  // Servers read a page, and terrain managers make a list, while they have a pass. Whoever changes what pages are made
+  // of closes the first, and when no server is at the disk any more the second: so managers wait for no disk.
+  Gate reading, listing;
   std::atomic<uint64_t> generation{0};  // one more with each such change
 };
 

@@ -91,6 +91,18 @@ struct SharedCache::Table {
     PublishOldest();
   }
 
+  // Nobody finds the page any more. The entry, to be freed; nothing where there is none, or its last pin will free it.
+  std::unique_ptr<Entry> TakeOut(Quadcode node, Counters& counters) REQUIRES_LOCK(mutex) {
+    Entry* const entry = Lookup(node);
+    if (entry == nullptr) return nullptr;
+    Remove(entry);
+    entry->is_dropped = entry->pins.load(std::memory_order_relaxed) > 0;
+    if (entry->is_dropped) return nullptr;
+    Unlink(entry);
+    counters.resident_bytes.fetch_sub(entry->charge_bytes, std::memory_order_relaxed);
+    return std::unique_ptr<Entry>(entry);
+  }
+
   // Counts one more pin of a resident entry.
   void Pin(Entry* entry, Counters& counters) REQUIRES_LOCK(mutex) {
     if (entry->pins.fetch_add(1, std::memory_order_relaxed) > 0) return;
@@ -325,8 +337,21 @@ std::vector<PageKey> SharedCache::Keys(Which which) const {
 }
 
 void SharedCache::Replace(const PageKey& key, std::unique_ptr<const Page> page) {
-  Drop(key);
-  Insert(key, std::move(page)).Release();
+  BELVEDERE_CHECK(key.type < tables_.size() && page != nullptr);
+  const size_t charge_bytes = ChargeOf(*page);
+  auto added = std::make_unique<PagePin::Entry>(key, std::move(page), charge_bytes);
+  Reserve(charge_bytes);
+  std::unique_ptr<PagePin::Entry> freed;  // after the lock is released
+  PagePin pin;
+  {
+    Table& table = *tables_[key.type];
+    MutexLock lock(table.mutex);
+    freed = table.TakeOut(key.node, *counters_);
+    counters_->pinned_bytes.fetch_add(charge_bytes, std::memory_order_relaxed);
+    table.failures.erase(key.node);
+    table.Add(added.get());
+    pin = PagePin(this, added.release());
+  }
 }
 
 void SharedCache::Drop(const PageKey& key) {
@@ -334,16 +359,7 @@ void SharedCache::Drop(const PageKey& key) {
   std::unique_ptr<PagePin::Entry> freed;  // after the lock is released
   Table& table = *tables_[key.type];
   MutexLock lock(table.mutex);
-  PagePin::Entry* const entry = table.Lookup(key.node);
-  if (entry == nullptr) return;
-  table.Remove(entry);
-  if (entry->pins.load(std::memory_order_relaxed) > 0) {
-    entry->is_dropped = true;
-    return;
-  }
-  table.Unlink(entry);
-  counters_->resident_bytes.fetch_sub(entry->charge_bytes, std::memory_order_relaxed);
-  freed.reset(entry);
+  freed = table.TakeOut(key.node, *counters_);
 }
 
 void SharedCache::ForgetFailures() {

@@ -92,8 +92,8 @@ class SharedCache {
   // Which pages there are, those of lower data types first.
   enum class Which { kAll, kPinned };
   std::vector<PageKey> Keys(Which which) const;
-  // The page takes the place of the one that is there, which stays for those that hold pins of it, and goes with the
-  // last. It counts until then.
+  // The page takes the place of the one that is there, in one step. The old one stays for those that hold pins of it,
+  // and goes with the last; it counts until then.
   void Replace(const PageKey& key, std::unique_ptr<const Page> page);
   // Nobody finds the page any more; else as Replace.
   void Drop(const PageKey& key);

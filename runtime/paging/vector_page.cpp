@@ -1,5 +1,7 @@
 #include "runtime/paging/vector_page.h"
 
+#include <fmt/format.h>
+
 #include <array>
 
 namespace belvedere {
@@ -19,6 +21,12 @@ std::optional<FeatureClass> FeatureClassOf(std::string_view name) {
     if (kNames[i] == name) return static_cast<FeatureClass>(i);
   }
   return std::nullopt;
+}
+
+std::string TextOf(const AttributeValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* number = std::get_if<int64_t>(&value)) return fmt::format("{}", *number);
+  return fmt::format("{}", std::get<double>(value));
 }
 
 const AttributeValue* VectorPage::Find(const VectorFeature& feature, std::string_view key) const {

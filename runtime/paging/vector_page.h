@@ -45,6 +45,7 @@ enum class FeatureShape : uint8_t { kPoints, kLines, kPolygons };
 
 using AttributeValue = std::variant<int64_t, double, std::string>;
 using Attribute = std::pair<std::string, AttributeValue>;
+std::string TextOf(const AttributeValue& value);
 
 struct VectorPoint {
   int32_t x = 0, y = 0;

@@ -72,14 +72,14 @@ TEST_F(TerrainManagerTest, ChangedPagesGiveANewListOfASettledView) {
   TerrainManager manager(1, paging_, channel_, {}, Clock::System());
   while (!NextList().statistics.settled) Serve();
   const uint64_t before = channel_->terrain_lists.front().number;
-  paging_.reading.Close();  // no list is being made from here on
+  paging_.listing.Close();  // no list is being made from here on
   for (const PageKey& key : paging_.cache.Keys(SharedCache::Which::kAll)) {
     auto page = test::FlatPage(key.node, std::vector<float>(kVerticesPerPage, 1.0F));
     page->max_height_m = 77;
     paging_.cache.Replace(key, std::move(page));
   }
   paging_.generation.fetch_add(1);
-  paging_.reading.Open();
+  paging_.listing.Open();
   while (!NextList().statistics.settled) Serve();
   EXPECT_GT(channel_->terrain_lists.front().number, before);
   int changed = 0;

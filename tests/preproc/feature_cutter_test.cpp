@@ -14,7 +14,6 @@ namespace belvedere {
 namespace {
 
 using Pages = std::map<uint64_t, VectorPage>;
-constexpr int64_t kUnitsPerDegree = (int64_t{1} << kGridBitsPerTree) / 45;
 
 Pages Cut(const std::vector<Feature>& features) {
   Pages pages;
@@ -37,11 +36,6 @@ Feature Line(uint32_t id, FeaturePart places) {
   return feature;
 }
 
-GridPlace At(double longitude_deg, double latitude_deg) {
-  return {std::llround((longitude_deg + 180) * static_cast<double>(kUnitsPerDegree)),
-          std::llround((latitude_deg + 90) * static_cast<double>(kUnitsPerDegree))};
-}
-
 double LengthIn(const VectorPage& page) {
   double length = 0;
   for (const auto& part : page.parts) {
@@ -61,7 +55,7 @@ std::vector<Feature> Wanderers(int count, double reach_deg) {
     double x = longitude(random), y = latitude(random);
     FeaturePart line;
     for (int point = 0; point < 60; ++point) {
-      line.push_back(At(x, y));
+      line.push_back(GridPlace::At(y, x));
       x += step(random);
       y = std::clamp(y + step(random), -89.0, 89.0);
     }
@@ -101,8 +95,8 @@ TEST(FeatureCutter, CompletePagesTogetherAreTheFeatures) {
 // Also between quadtrees, and from one end of the Earth's grid to the other.
 TEST(FeatureCutter, NeighboursShareThePointsOnTheirBorder) {
   std::vector<Feature> features = Wanderers(30, 2);
-  features.push_back(Line(30, {At(179.2, 10.1), At(181.7, 11.3)}));
-  features.push_back(Line(31, {At(-181.2, -10.1), At(-178.7, -11.3)}));
+  features.push_back(Line(30, {GridPlace::At(10.1, 179.2), GridPlace::At(11.3, 181.7)}));
+  features.push_back(Line(31, {GridPlace::At(-10.1, -181.2), GridPlace::At(-11.3, -178.7)}));
   const Pages pages = Cut(features);
   int shared = 0;
   for (const auto& [word, page] : pages) {
@@ -133,7 +127,7 @@ TEST(FeatureCutter, CoarsePagesHaveLittleAndTheImportantFirst) {
     place.id = i;
     place.of = FeatureClass::kPlace;
     place.importance = static_cast<double>((i * 7919) % 20000);
-    place.parts = {{At(7 + 0.0001 * (i % 141), 46 + 0.0001 * (i / 141))}};
+    place.parts = {{GridPlace::At(46 + 0.0001 * (i / 141), 7 + 0.0001 * (i % 141))}};
     features.push_back(place);
   }
   const Pages pages = Cut(features);
@@ -153,7 +147,8 @@ TEST(FeatureCutter, CoarsePagesHaveLittleAndTheImportantFirst) {
 
 TEST(FeatureCutter, SmallThingsAppearOnlyWhereTheyAreSeen) {
   int pages = 0;
-  const std::vector<Feature> features{Line(0, {At(10.2, 50.2), At(10.201, 50.201), At(10.2005, 50.202)})};
+  const std::vector<Feature> features{
+      Line(0, {GridPlace::At(50.2, 10.2), GridPlace::At(50.201, 10.201), GridPlace::At(50.202, 10.2005)})};
   for (const auto& [word, page] : Cut(features)) {
     const Quadcode node = *Quadcode::FromWord(word);
     const bool is_seen = 0.002 >= node.SizeDegrees() / 2048;
@@ -173,7 +168,7 @@ TEST(FeatureCutter, BuildingsAreNeverCut) {
     house.of = FeatureClass::kBuilding;
     house.shape = FeatureShape::kPolygons;
     house.resolution = 100;
-    const GridPlace corner = At(longitude(random), latitude(random));
+    const GridPlace corner = GridPlace::At(latitude(random), longitude(random));
     house.parts = {
         {corner, {corner.x + 1500, corner.y}, {corner.x + 1500, corner.y + 900}, {corner.x, corner.y + 900}}};
     features.push_back(house);

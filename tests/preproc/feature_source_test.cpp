@@ -6,6 +6,7 @@
 #include <array>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <utility>
 
 namespace belvedere {
@@ -38,6 +39,15 @@ SourceSpec SpecOf(const std::string& path, FeatureClass of) {
   return spec;
 }
 
+// Of a file of these features; nothing where it cannot be read.
+std::optional<FeatureSource> ReadFeatures(const std::string& name, const std::vector<std::string>& features,
+                                          FeatureClass of) {
+  const std::string path = WriteText(FreshFolder(name) + "/some.geojson", Collection(features));
+  auto source = FeatureSource::Read(SpecOf(path, of));
+  EXPECT_TRUE(source.ok()) << source.message();
+  return source.ok() ? std::optional(std::move(*source)) : std::nullopt;
+}
+
 std::string ReasonOf(const SourceSpec& spec) {
   const auto source = FeatureSource::Read(spec);
   return source.ok() ? "it was read" : source.message();
@@ -52,13 +62,6 @@ std::string TextOf(const Feature& feature, const std::string& key) {
     return std::get<std::string>(value);
   }
   return "none";
-}
-
-double LongitudeOf(const GridPlace& place) {
-  return static_cast<double>(place.x) * 45 / (1 << 29) - 180;
-}
-double LatitudeOf(const GridPlace& place) {
-  return static_cast<double>(place.y) * 45 / (1 << 29) - 90;
 }
 
 TEST(FeatureSource, ReadsEveryShapeAndTypeOfAttribute) {
@@ -76,8 +79,8 @@ TEST(FeatureSource, ReadsEveryShapeAndTypeOfAttribute) {
   const auto& features = source->features();
   ASSERT_EQ(features.size(), 4u);
   EXPECT_EQ(features[0].shape, FeatureShape::kPoints);
-  EXPECT_NEAR(LongitudeOf(features[0].parts[0][0]), 8.5, 1e-7);
-  EXPECT_NEAR(LatitudeOf(features[0].parts[0][0]), 47.25, 1e-7);
+  EXPECT_NEAR(features[0].parts[0][0].longitude_deg(), 8.5, 1e-7);
+  EXPECT_NEAR(features[0].parts[0][0].latitude_deg(), 47.25, 1e-7);
   EXPECT_EQ(TextOf(features[0], "name"), "Town");
   EXPECT_EQ(TextOf(features[0], "people"), "whole 12000");
   EXPECT_EQ(TextOf(features[0], "share"), "real 0.5");
@@ -91,7 +94,7 @@ TEST(FeatureSource, ReadsEveryShapeAndTypeOfAttribute) {
   EXPECT_EQ(record.crs, "EPSG:4326");
   EXPECT_NEAR(record.extent.north_deg, 47.25, 1e-6);
   EXPECT_NE(record.state, "");
-  EXPECT_EQ(source->remark(), "");
+  EXPECT_TRUE(source->remarks().empty());
 }
 
 TEST(FeatureSource, BringsOtherSystemsToTheEarth) {
@@ -106,8 +109,8 @@ TEST(FeatureSource, BringsOtherSystemsToTheEarth) {
   for (const SourceSpec& spec : {SpecOf(declared, FeatureClass::kPlace), given}) {
     const auto source = FeatureSource::Read(spec);
     ASSERT_TRUE(source.ok()) << source.message();
-    EXPECT_NEAR(LatitudeOf(source->features()[0].parts[0][0]), 46.951083, 1e-4);
-    EXPECT_NEAR(LongitudeOf(source->features()[0].parts[0][0]), 7.438637, 1e-4);
+    EXPECT_NEAR(source->features()[0].parts[0][0].latitude_deg(), 46.951083, 1e-4);
+    EXPECT_NEAR(source->features()[0].parts[0][0].longitude_deg(), 7.438637, 1e-4);
     EXPECT_EQ(source->Record().crs, "EPSG:2056");
   }
   given.crs = "EPSG:nothing";
@@ -115,22 +118,18 @@ TEST(FeatureSource, BringsOtherSystemsToTheEarth) {
 }
 
 TEST(FeatureSource, ALineOver180GoesTheShortWay) {
-  const std::string folder = FreshFolder("features_180");
-  const std::string path =
-      WriteText(folder + "/line.geojson",
-                Collection({Json("{\"type\":\"LineString\",\"coordinates\":[[179.5,1],[-179.5,2]]}", "")}));
-  const auto source = FeatureSource::Read(SpecOf(path, FeatureClass::kRoad));
-  ASSERT_TRUE(source.ok());
-  EXPECT_NEAR(LongitudeOf(source->features()[0].parts[0][1]), 180.5, 1e-6);
+  const auto source =
+      ReadFeatures("features_180", {Json("{\"type\":\"LineString\",\"coordinates\":[[179.5,1],[-179.5,2]]}", "")},
+                   FeatureClass::kRoad);
+  ASSERT_TRUE(source);
+  EXPECT_NEAR(source->features()[0].parts[0][1].longitude_deg(), 180.5, 1e-6);
 }
 
 TEST(FeatureSource, BordersAreOutlines) {
-  const std::string folder = FreshFolder("features_border");
-  const std::string path =
-      WriteText(folder + "/land.geojson",
-                Collection({Json("{\"type\":\"Polygon\",\"coordinates\":[[[0,0],[4,0],[4,4],[0,0]]]}", "")}));
-  const auto source = FeatureSource::Read(SpecOf(path, FeatureClass::kBorder));
-  ASSERT_TRUE(source.ok());
+  const auto source =
+      ReadFeatures("features_border", {Json("{\"type\":\"Polygon\",\"coordinates\":[[[0,0],[4,0],[4,4],[0,0]]]}", "")},
+                   FeatureClass::kBorder);
+  ASSERT_TRUE(source);
   EXPECT_EQ(source->features()[0].shape, FeatureShape::kLines);
   EXPECT_EQ(source->features()[0].parts[0].size(), 4u);
 }
@@ -143,7 +142,7 @@ TEST(FeatureSource, WhatHasNoPlaceIsLeftOutAndSaid) {
       SpecOf(WriteText(folder + "/some.geojson", Collection({good, Json("null", ""), far})), FeatureClass::kPlace));
   ASSERT_TRUE(source.ok());
   EXPECT_EQ(source->features().size(), 1u);
-  EXPECT_EQ(source->remark(), "2 features have no place on the Earth and are left out");
+  EXPECT_EQ(source->remarks(), std::vector<std::string>{"2 features have no place on the Earth and are left out"});
   EXPECT_EQ(ReasonOf(SpecOf(WriteText(folder + "/none.geojson", Collection({far})), FeatureClass::kPlace)),
             "it has no such feature with a place; of 1 it is missing or not on the Earth");
 }

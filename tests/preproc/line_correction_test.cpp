@@ -165,11 +165,7 @@ TEST(LineCorrection, CoarsePagesAreLeftAlone) {
 
 TEST(LineCorrection, GoesOver180) {
   LineCorrection correction;
-  const auto at = [](double longitude_deg, double latitude_deg) {
-    return GridPlace{std::llround((longitude_deg + 180) * (1 << 29) / 45),
-                     std::llround((latitude_deg + 90) * (1 << 29) / 45)};
-  };
-  const Feature road = Line(FeatureClass::kRoad, {at(179.99, 5), at(180.01, 5)});
+  const Feature road = Line(FeatureClass::kRoad, {GridPlace::At(5, 179.99), GridPlace::At(5, 180.01)});
   correction.Add(std::span(&road, 1), 60, [](double, double longitude_deg) {
     EXPECT_GE(std::abs(longitude_deg), 179.9);
     return 77.0;

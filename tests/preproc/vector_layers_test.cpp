@@ -152,6 +152,19 @@ TEST(VectorLayers, ChangeWithTheirSources) {
   ExpectSame(PagesOf(folder), BuiltWhole("vectors_whole", folder, kHeights + kPlaces + kHouses));
 }
 
+TEST(VectorLayers, WhatIsLeftOutIsSaidOnceItComes) {
+  const std::string folder = Prepare("vectors_remarks");
+  MustBuild(folder, kHeights + kPlaces);
+  std::ofstream(folder + "/others.csv") << "lon,lat,name\n5,5,Here\n5,500,Nowhere\n";
+  const auto added = Add(folder, kOthers);
+  ASSERT_TRUE(added.ok()) << added.message();
+  ASSERT_EQ(added->warnings.size(), 1u);
+  EXPECT_EQ(added->warnings[0].reason, "1 features have no place on the Earth and are left out");
+  const auto again = Add(folder, kHouses);
+  ASSERT_TRUE(again.ok()) << again.message();
+  EXPECT_TRUE(again->warnings.empty());
+}
+
 TEST(VectorLayers, StayWhereOthersChange) {
   const std::string folder = Prepare("vectors_stay");
   MustBuild(folder, kHeights + kPlaces + kHouses);

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <thread>
 
 namespace belvedere {
 namespace {
@@ -151,6 +152,34 @@ TEST(DatasetFollower, AnotherBuildTakesTheWholesPlace) {
   EXPECT_NE(house.follower_->Notices()[0].find("has a new layer photo"), std::string::npos);
 }
 
+// Its pages would be shown by what the bytes meant before.
+TEST(DatasetFollower, ALayerThatMeansSomethingElseIsNotFollowed) {
+  House house;
+  auto writer = ChangeWriter::Create(house.small_.path());
+  ASSERT_TRUE(writer.ok());
+  std::vector<LayerRecord> layers = (*house.small_).layers();
+  layers[1].step = StepOf{"imagery", 5, Repeats::kNever};
+  ASSERT_TRUE((*writer)->Finish(layers, "2026-03-03T00:00:00Z").ok());
+  EXPECT_FALSE(house.follower_->Look());
+  ASSERT_EQ(house.follower_->Notices().size(), 1u);
+  EXPECT_NE(house.follower_->Notices()[0].find("no layer imagery as it was"), std::string::npos);
+}
+
+// A server that is at the disk keeps the change waiting, and no manager.
+TEST(DatasetFollower, ManagersWaitForNoDisk) {
+  House house;
+  house.Raise(kChanged, 500);
+  std::thread follower;
+  {
+    const GatePass slow(house.paging_->reading);
+    follower = std::thread([&house] { house.follower_->Look(); });
+    for (int list = 0; list < 100; ++list) const GatePass pass(house.paging_->listing);
+    EXPECT_EQ(house.paging_->generation, 0u);
+  }
+  follower.join();
+  EXPECT_EQ(house.paging_->generation, 1u);
+}
+
 TEST(DatasetFollower, GoesOnWhereWhatIsThereCannotBeUsed) {
   House house;
   const PagePin far = house.Read("elevation", kFar);
@@ -161,7 +190,7 @@ TEST(DatasetFollower, GoesOnWhereWhatIsThereCannotBeUsed) {
   }
   EXPECT_FALSE(house.follower_->Look());
   ASSERT_EQ(house.follower_->Notices().size(), 1u);
-  EXPECT_NE(house.follower_->Notices()[0].find("has no layer elevation"), std::string::npos);
+  EXPECT_NE(house.follower_->Notices()[0].find("has no layer elevation as it was"), std::string::npos);
   std::ofstream(house.small_.path() + "/data.mdb") << "no store";
   EXPECT_FALSE(house.follower_->Look());
   EXPECT_NE(house.follower_->Notices()[0].find("cannot open"), std::string::npos);
