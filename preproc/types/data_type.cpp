@@ -1,5 +1,6 @@
 #include "preproc/types/data_type.h"
 
+#include "preproc/hex_colour.h"
 #include "preproc/spec_reader.h"
 #include "preproc/types/process_modules.h"
 #include "preproc/types/stock_types.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -25,18 +25,6 @@ constexpr std::array<std::pair<MetaType, std::string_view>, 5> kMetaTypes = {
      {MetaType::kSurfaceProperty, "surface property"},
      {MetaType::kVector, "vector"},
      {MetaType::kModel, "model"}}};
-
-// "#rrggbb" or "#rrggbbaa".
-std::optional<std::array<uint8_t, 4>> ParseColour(std::string_view text) {
-  if ((text.size() != 7 && text.size() != 9) || text[0] != '#') return std::nullopt;
-  std::array<uint8_t, 4> colour{0, 0, 0, 255};
-  for (size_t i = 0; i < (text.size() - 1) / 2; ++i) {
-    const char* const first = text.data() + 1 + 2 * i;
-    const auto [end, problem] = std::from_chars(first, first + 2, colour[i], 16);
-    if (problem != std::errc() || end != first + 2) return std::nullopt;
-  }
-  return colour;
-}
 
 // One [[type]] table.
 class TypeParser : private SpecReader {
@@ -93,7 +81,7 @@ class TypeParser : private SpecReader {
     for (size_t i = 0; list != nullptr && i < list->size(); ++i) {
       const toml::table* one = (*list)[i].as_table();
       const auto name = one == nullptr ? std::nullopt : (*one)["name"].value<std::string>();
-      const auto colour = one == nullptr ? std::nullopt : ParseColour((*one)["colour"].value_or(std::string()));
+      const auto colour = one == nullptr ? std::nullopt : ParseHexColour((*one)["colour"].value_or(std::string()));
       if (!name || !colour || one->size() != 2)
         return Error((*list)[i], "a class has a \"name\" and a \"colour\" like \"#8fbf6f\" or \"#8fbf6f80\"");
       property.classes.push_back({*name, *colour});

@@ -1,5 +1,6 @@
 #include "preproc/vectors/buildings.h"
 
+#include "preproc/hex_colour.h"
 #include "preproc/vectors/footprint.h"
 #include "preproc/vectors/roof.h"
 #include "runtime/base/status.h"
@@ -228,16 +229,8 @@ std::optional<std::array<uint8_t, 3>> ParseColourName(std::string_view text) {
   for (const auto& [name, colour] : kNames) {
     if (name == text) return colour;
   }
-  if ((text.size() != 4 && text.size() != 7) || text[0] != '#') return std::nullopt;
-  const size_t digits = (text.size() - 1) / 3;
-  Colour colour{};
-  for (size_t i = 0; i < 3; ++i) {
-    const char* const first = text.data() + 1 + digits * i;
-    const auto [end, problem] = std::from_chars(first, first + digits, colour[i], 16);
-    if (problem != std::errc() || end != first + digits) return std::nullopt;
-    if (digits == 1) colour[i] = static_cast<uint8_t>(colour[i] * 17);
-  }
-  return colour;
+  const auto hex = ParseHexColour(text);
+  return hex ? std::optional(Colour{(*hex)[0], (*hex)[1], (*hex)[2]}) : std::nullopt;
 }
 
 }  // namespace belvedere

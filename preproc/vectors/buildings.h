@@ -25,7 +25,7 @@ std::shared_ptr<BuildingPage> RaiseBuildings(const VectorPage& page, Quadcode no
 
 // "12", "12.5 m", "40 ft", "40'". Nothing where it is no length.
 std::optional<double> ParseLength(std::string_view text);
-// "#8f4", "#8040ff", or one of the common names. Nothing where it is neither.
+// As ParseHexColour, without alpha, or one of the common names. Nothing where it is neither.
 std::optional<std::array<uint8_t, 3>> ParseColourName(std::string_view text);
 
 }  // namespace belvedere

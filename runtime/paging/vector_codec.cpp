@@ -129,6 +129,16 @@ uint32_t Share(Reader& in, uint32_t& sum, size_t total) {
   return share;
 }
 
+// How many there are in each list; and room for as many.
+template <typename... Lists>
+void PutCounts(Writer& out, const Lists&... lists) {
+  (out.Number(lists.size()), ...);
+}
+template <typename... Lists>
+void GetCounts(Reader& in, Lists&... lists) {
+  (lists.resize(in.Count()), ...);
+}
+
 Result<std::span<const uint8_t>> Unwrap(std::span<const uint8_t> bytes, uint8_t kind) {
   if (Status status = CheckPageHeader(bytes, kind); !status.ok()) return status;
   const uint32_t raw_bytes = RawBytesOf(bytes);
@@ -149,10 +159,7 @@ float Metres(int64_t centimetres) {
 std::vector<uint8_t> EncodeVector(const VectorPage& page) {
   Writer out;
   out.Byte(page.is_complete ? 1 : 0);
-  for (const size_t count : {page.features.size(), page.parts.size(), page.points.size(), page.attributes.size(),
-                             page.keys.size(), page.values.size()}) {
-    out.Number(count);
-  }
+  PutCounts(out, page.features, page.parts, page.points, page.attributes, page.keys, page.values);
   int64_t id = 0;
   for (const VectorFeature& feature : page.features) {
     out.Signed(static_cast<int64_t>(feature.id) - std::exchange(id, feature.id));
@@ -183,12 +190,7 @@ Result<std::shared_ptr<VectorPage>> DecodeVector(std::span<const uint8_t> bytes)
   Reader in(*raw);
   auto page = std::make_shared<VectorPage>();
   page->is_complete = in.AtMost(1) == 1;
-  page->features.resize(in.Count());
-  page->parts.resize(in.Count());
-  page->points.resize(in.Count());
-  page->attributes.resize(in.Count());
-  page->keys.resize(in.Count());
-  page->values.resize(in.Count());
+  GetCounts(in, page->features, page->parts, page->points, page->attributes, page->keys, page->values);
   int64_t id = 0;
   uint32_t parts = 0, attributes = 0, points = 0;
   for (VectorFeature& feature : page->features) {
@@ -225,8 +227,7 @@ Result<std::shared_ptr<VectorPage>> DecodeVector(std::span<const uint8_t> bytes)
 
 std::vector<uint8_t> EncodeBuildings(const BuildingPage& page) {
   Writer out;
-  for (const size_t count : {page.buildings.size(), page.vertices.size(), page.indices.size(), page.details.size()})
-    out.Number(count);
+  PutCounts(out, page.buildings, page.vertices, page.indices, page.details);
   int64_t id = 0;
   for (const Building& building : page.buildings) {
     out.Signed(static_cast<int64_t>(building.feature) - std::exchange(id, building.feature));
@@ -260,10 +261,7 @@ Result<std::shared_ptr<BuildingPage>> DecodeBuildings(std::span<const uint8_t> b
   if (!raw.ok()) return raw.status();
   Reader in(*raw);
   auto page = std::make_shared<BuildingPage>();
-  page->buildings.resize(in.Count());
-  page->vertices.resize(in.Count());
-  page->indices.resize(in.Count());
-  page->details.resize(in.Count());
+  GetCounts(in, page->buildings, page->vertices, page->indices, page->details);
   int64_t id = 0;
   for (Building& building : page->buildings) {
     id = in.After(id, 0, UINT32_MAX);

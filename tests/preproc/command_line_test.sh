@@ -30,20 +30,13 @@ one_line() {
 
 # A north-up picture of 8 x 4 pixels over the whole Earth.
 printf 'P5\n8 4\n255\n%032d' 0 >grey.pgm
-cat >spec.toml <<TEXT
-[[layer]]
-name = "elevation"
-kind = "elevation"
-  [[layer.source]]
-  path = "grey.pgm"
-  georeference = [-180, -90, 180, 90]
-[[layer]]
-name = "imagery"
-kind = "imagery"
-  [[layer.source]]
-  path = "grey.pgm"
-  georeference = [-180, -90, 180, 90]
-TEXT
+# layer NAME KIND PATH MORE: one with a source, as a spec has it
+layer() {
+  printf '[[layer]]\nname = "%s"\nkind = "%s"\n  [[layer.source]]\n  path = "%s"\n  %s\n' "$@"
+}
+for kind in elevation imagery; do
+  layer $kind $kind grey.pgm 'georeference = [-180, -90, 180, 90]'
+done >spec.toml
 
 expect 0 --help
 expect 2
@@ -112,14 +105,7 @@ expect 0 export dataset --layer imagery --out a.mbtiles --extent -10 -10 10 10
 [ -s a.mbtiles ] || fail "no tiles"
 
 printf 'lat,lon,name\n47.1,9.5,Here\n47.2,9.6,There\n' >places.csv
-cat >vectors.toml <<TEXT
-[[layer]]
-name = "places"
-kind = "vector"
-  [[layer.source]]
-  path = "places.csv"
-  features = "place"
-TEXT
+layer places vector places.csv 'features = "place"' >vectors.toml
 expect 0 vectors.toml --out vectors --no-report
 expect 0 query vectors --near 47.1 9.5 --within 100
 grep -q '"name":"Here"' out || fail "query does not find the place: $(cat out)"

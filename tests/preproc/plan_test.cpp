@@ -1,5 +1,6 @@
 #include "preproc/plan.h"
 
+#include "runtime/earth/ellipsoid.h"
 #include "runtime/paging/page.h"
 
 #include <gtest/gtest.h>
@@ -41,6 +42,18 @@ TEST(Plan, LevelZeroIsWholeAndFinerNodesFollowTheSource) {
   EXPECT_EQ(CountNodes(world), kTrees * (1 + 4 + 16 + 64));
   EXPECT_EQ(SourceLevel(inside, Quadcode::Containing(50.015, 10.015, 3)), 5);
   EXPECT_EQ(SourceLevel(inside, Quadcode::Containing(-50, 10, 3)), 0);
+}
+
+TEST(Boxes, AreWidenedByMetres) {
+  const GeoBox wide = Widened({10, 59, 11, 60}, 1000);
+  const glm::dvec2 metres = MetresPerDegree(60);
+  EXPECT_LE(wide.west_deg, 10 - 1000 / metres.x);
+  EXPECT_NEAR(wide.west_deg, 10 - 1000 / metres.x, 2e-4) << "and not much more";
+  EXPECT_LE(wide.south_deg, 59 - 1000 / metres.y);
+  EXPECT_GE(wide.north_deg, 60 + 1000 / metres.y);
+  EXPECT_NEAR(wide.north_deg, 60 + 1000 / metres.y, 2e-4);
+  const GeoBox pole = Widened({10, 89.999, 10, 89.999}, 1000);
+  EXPECT_GE(pole.east_deg - pole.west_deg, 360) << "all around";
 }
 
 TEST(Plan, BoxesOverlapWhateverTheirTurn) {

@@ -58,6 +58,22 @@ TEST(Ellipsoid, LevelAxesAreRightHandedAndPointWhereTheySay) {
   }
 }
 
+// Against the distance between two points that are a ten-thousandth of a degree apart.
+TEST(Ellipsoid, MetresPerDegree) {
+  constexpr double kStep_deg = 1e-4;
+  for (const double latitude_deg : {-89.0, -60.0, -12.5, 0.0, 45.0, 80.0}) {
+    const glm::dvec2 metres = MetresPerDegree(latitude_deg);
+    const glm::dvec3 here = Reference({latitude_deg, 20, 0});
+    EXPECT_NEAR(metres.x, glm::distance(here, Reference({latitude_deg, 20 + kStep_deg, 0})) / kStep_deg, 0.1);
+    EXPECT_NEAR(metres.y,
+                glm::distance(Reference({latitude_deg - kStep_deg / 2, 20, 0}),
+                              Reference({latitude_deg + kStep_deg / 2, 20, 0})) /
+                    kStep_deg,
+                0.1);
+  }
+  EXPECT_NEAR(MetresPerDegree(90).x, 0, 1e-9);
+}
+
 TEST(Ellipsoid, HorizonDistance) {
   EXPECT_EQ(HorizonDistance(-5), 0);
   EXPECT_EQ(HorizonDistance(0), 0);
