@@ -1,6 +1,5 @@
 #include "dis/codec.h"
 
-#include "dis/wire.h"
 #include "runtime/base/status.h"
 
 #include <algorithm>
@@ -9,32 +8,6 @@
 
 namespace belvedere::dis {
 namespace {
-
-constexpr uint8_t kEntityInformationFamily = 1;
-constexpr uint8_t kSimulationManagementFamily = 5;
-
-PduHeader ReadHeader(WireReader& in) {
-  PduHeader header;
-  header.version = in.U8();
-  header.exercise = in.U8();
-  header.type = in.U8();
-  header.family = in.U8();
-  header.timestamp = in.U32();
-  header.length = in.U16();
-  header.status = header.version >= 7 ? in.U8() : uint8_t{0};
-  return header;
-}
-
-void WriteHeader(WireWriter& out, const PduHeader& header) {
-  out.U8(header.version);
-  out.U8(header.exercise);
-  out.U8(header.type);
-  out.U8(header.family);
-  out.U32(header.timestamp);
-  out.U16(header.length);
-  out.U8(header.version >= 7 ? header.status : uint8_t{0});
-  out.U8(0);
-}
 
 template <typename Vector>
 bool Finite(const Vector& v) {
@@ -61,44 +34,9 @@ Rejection CheckState(const EntityId& id, const glm::dvec3& position, const glm::
   return CheckPosition(position);
 }
 
-// The `count` variable parameters from the reader's place on; false when the PDU has no room for them.
-bool ReadParameters(std::span<const uint8_t> pdu, const WireReader& in, size_t count, VariableParameters& parameters) {
-  const size_t bytes = count * VariableParameters::kBytes;
-  if (bytes > pdu.size() - in.at()) return false;
-  parameters = VariableParameters(pdu.subspan(in.at(), bytes));
-  return true;
-}
-
-MunitionDescriptor ReadDescriptor(WireReader& in) {
-  MunitionDescriptor descriptor;
-  descriptor.type = in.Type();
-  descriptor.warhead = in.U16();
-  descriptor.fuse = in.U16();
-  descriptor.quantity = in.U16();
-  descriptor.rate = in.U16();
-  return descriptor;
-}
-
-// Every Read function: REQUIRES that `pdu` has the fixed bytes of its type.
-Rejection ReadEntityState(std::span<const uint8_t> pdu, EntityState& state) {
-  WireReader in(pdu, kHeaderBytes);
-  state.id = in.Id();
-  state.force = in.U8();
-  const size_t parameters = in.U8();
-  state.type = in.Type();
-  state.alternative_type = in.Type();
-  state.velocity_mps = in.Vec3();
-  state.position_ecef = in.DVec3();
-  state.orientation_rad = in.Vec3();
-  state.appearance = in.U32();
-  state.model = in.U8();
-  std::ranges::copy(in.Bytes(state.model_parameters.size()), state.model_parameters.begin());
-  state.acceleration_mps2 = in.Vec3();
-  state.angular_velocity_radps = in.Vec3();
-  state.character_set = in.U8();
-  std::ranges::copy(in.Bytes(state.marking.size()), state.marking.begin());
-  state.capabilities = in.U32();
-  if (!ReadParameters(pdu, in, parameters, state.parameters)) return Rejection::kParametersDoNotFit;
+// Check: what is wrong with the values of a body. An Entity State's accelerations that its model does not use are
+// zeroed where they are not finite.
+Rejection Check(EntityState& state) {
   const DeadReckoning model = DeadReckoningModel(state.model);
   if (!Finite(state.acceleration_mps2)) {
     if (ModelAccelerates(model)) return Rejection::kNotFinite;
@@ -111,64 +49,53 @@ Rejection ReadEntityState(std::span<const uint8_t> pdu, EntityState& state) {
   return CheckState(state.id, state.position_ecef, state.velocity_mps, state.orientation_rad);
 }
 
-Rejection ReadEntityStateUpdate(std::span<const uint8_t> pdu, EntityStateUpdate& update) {
-  WireReader in(pdu, kHeaderBytes);
-  update.id = in.Id();
-  in.Skip(1);
-  const size_t parameters = in.U8();
-  update.velocity_mps = in.Vec3();
-  update.position_ecef = in.DVec3();
-  update.orientation_rad = in.Vec3();
-  update.appearance = in.U32();
-  if (!ReadParameters(pdu, in, parameters, update.parameters)) return Rejection::kParametersDoNotFit;
+Rejection Check(const EntityStateUpdate& update) {
   return CheckState(update.id, update.position_ecef, update.velocity_mps, update.orientation_rad);
 }
 
-Rejection ReadFire(std::span<const uint8_t> pdu, Fire& fire) {
-  WireReader in(pdu, kHeaderBytes);
-  fire.firing = in.Id();
-  fire.target = in.Id();
-  fire.munition = in.Id();
-  fire.event = in.Id();
-  fire.mission = in.U32();
-  fire.position_ecef = in.DVec3();
-  fire.descriptor = ReadDescriptor(in);
-  fire.velocity_mps = in.Vec3();
-  fire.range_m = in.F32();
+Rejection Check(const Fire& fire) {
   if (!Finite(fire.velocity_mps) || !std::isfinite(fire.range_m)) return Rejection::kNotFinite;
   return CheckPosition(fire.position_ecef);
 }
 
-Rejection ReadDetonation(std::span<const uint8_t> pdu, Detonation& detonation) {
-  WireReader in(pdu, kHeaderBytes);
-  detonation.firing = in.Id();
-  detonation.target = in.Id();
-  detonation.munition = in.Id();
-  detonation.event = in.Id();
-  detonation.velocity_mps = in.Vec3();
-  detonation.position_ecef = in.DVec3();
-  detonation.descriptor = ReadDescriptor(in);
-  detonation.position_in_target_m = in.Vec3();
-  detonation.result = in.U8();
-  const size_t parameters = in.U8();
-  in.Skip(2);
-  if (!ReadParameters(pdu, in, parameters, detonation.parameters)) return Rejection::kParametersDoNotFit;
+Rejection Check(const Detonation& detonation) {
   if (!Finite(detonation.velocity_mps) || !Finite(detonation.position_in_target_m)) return Rejection::kNotFinite;
   return CheckPosition(detonation.position_ecef);
 }
 
-Rejection ReadRemoveEntity(std::span<const uint8_t> pdu, RemoveEntity& remove) {
-  WireReader in(pdu, kHeaderBytes);
-  remove.originating = in.Id();
-  remove.removed = in.Id();
-  remove.request = in.U32();
+Rejection Check(const Collision& collision) {
+  const bool finite = Finite(collision.velocity_mps) && Finite(collision.position_in_entity_m);
+  return finite ? Rejection::kNone : Rejection::kNotFinite;
+}
+
+Rejection Check(const ElectromagneticEmission& emission) {
+  EmitterReader reader(emission);
+  EmitterSystem system;
+  while (reader.NextSystem(system)) {
+  }
+  return reader.fits() ? Rejection::kNone : Rejection::kRecordsDoNotFit;
+}
+
+Rejection Check(const Designator& designator) {
+  if (!Finite(designator.acceleration_mps2) || !Finite(designator.spot_in_target_m)) return Rejection::kNotFinite;
+  return CheckPosition(designator.spot_ecef);
+}
+
+// Nothing of these is drawn at a place; their numbers are passed on as they came.
+template <typename Body>
+Rejection Check(const Body&) {
   return Rejection::kNone;
 }
 
 template <typename Body>
-void ReadBody(std::span<const uint8_t> bytes, size_t fixed_bytes, Rejection (*read)(std::span<const uint8_t>, Body&),
-              Pdu& pdu) {
-  pdu.rejection = bytes.size() < fixed_bytes ? Rejection::kShortBody : read(bytes, pdu.body.emplace<Body>());
+void ReadBody(std::span<const uint8_t> bytes, Pdu& pdu) {
+  pdu.rejection = Rejection::kShortBody;
+  if (bytes.size() >= PduTraits<Body>::kFixedBytes) {
+    auto& body = pdu.body.emplace<Body>();
+    WireReader wire(bytes, kHeaderBytes);
+    Lay(wire, body);
+    pdu.rejection = wire.fits() ? Check(body) : Rejection::kRecordsDoNotFit;
+  }
   pdu.verdict = pdu.rejection == Rejection::kNone ? Verdict::kDecoded : Verdict::kRejected;
   if (pdu.verdict == Verdict::kRejected) pdu.body = std::monostate();
 }
@@ -179,11 +106,21 @@ void ReadPdu(std::span<const uint8_t> bytes, Pdu& pdu) {
     return;
   }
   switch (pdu.header.type) {
-    case kEntityState: return ReadBody(bytes, kEntityStateBytes, &ReadEntityState, pdu);
-    case kEntityStateUpdate: return ReadBody(bytes, kEntityStateUpdateBytes, &ReadEntityStateUpdate, pdu);
-    case kFire: return ReadBody(bytes, kFireBytes, &ReadFire, pdu);
-    case kDetonation: return ReadBody(bytes, kDetonationBytes, &ReadDetonation, pdu);
-    case kRemoveEntity: return ReadBody(bytes, kRemoveEntityBytes, &ReadRemoveEntity, pdu);
+    case kEntityState: return ReadBody<EntityState>(bytes, pdu);
+    case kEntityStateUpdate: return ReadBody<EntityStateUpdate>(bytes, pdu);
+    case kFire: return ReadBody<Fire>(bytes, pdu);
+    case kDetonation: return ReadBody<Detonation>(bytes, pdu);
+    case kCollision: return ReadBody<Collision>(bytes, pdu);
+    case kCreateEntity: return ReadBody<CreateEntity>(bytes, pdu);
+    case kRemoveEntity: return ReadBody<RemoveEntity>(bytes, pdu);
+    case kStartResume: return ReadBody<StartResume>(bytes, pdu);
+    case kStopFreeze: return ReadBody<StopFreeze>(bytes, pdu);
+    case kElectromagneticEmission: return ReadBody<ElectromagneticEmission>(bytes, pdu);
+    case kDesignator: return ReadBody<Designator>(bytes, pdu);
+    case kTransmitter: return ReadBody<Transmitter>(bytes, pdu);
+    case kSignal: return ReadBody<Signal>(bytes, pdu);
+    case kEnvironmentalProcess: return ReadBody<EnvironmentalProcess>(bytes, pdu);
+    case kGriddedData: return ReadBody<GriddedData>(bytes, pdu);
     default: pdu.verdict = Verdict::kIgnoredType;
   }
 }
@@ -197,7 +134,7 @@ std::string_view RejectionText(Rejection rejection) {
       "length less than a header",
       "length more than the datagram holds",
       "length less than this type of PDU takes",
-      "variable parameters do not fit",
+      "variable parameters or records do not fit",
       "value not finite",
       "position out of range",
       "entity id names no single entity",
@@ -206,19 +143,50 @@ std::string_view RejectionText(Rejection rejection) {
 }
 
 VariableParameter VariableParameters::operator[](size_t index) const {
-  WireReader in(bytes_.subspan(index * kBytes, kBytes));
+  WireReader in(raw.bytes().subspan(index * kBytes, kBytes));
   VariableParameter parameter;
-  parameter.record_type = in.U8();
-  if (parameter.record_type > 1) return parameter;
-  parameter.change = in.U8();
-  parameter.attached_to = in.U16();
-  parameter.part_type = in.U32();
-  if (parameter.record_type == 0) {
-    parameter.value = in.F32();
+  in(parameter.record_type);
+  if (parameter.record_type > VariableParameter::kAttachedPart) return parameter;
+  in(parameter.change, parameter.attached_to, parameter.part_type);
+  if (parameter.record_type == VariableParameter::kArticulatedPart) {
+    in(parameter.value);
   } else {
-    parameter.attached = in.Type();
+    in(parameter.attached);
   }
   return parameter;
+}
+
+std::array<uint8_t, VariableParameters::kBytes> EncodeParameter(const VariableParameter& parameter) {
+  BELVEDERE_CHECK(parameter.record_type <= VariableParameter::kAttachedPart);
+  std::array<uint8_t, VariableParameters::kBytes> bytes{};
+  WireWriter out(bytes);
+  out(parameter.record_type, parameter.change, parameter.attached_to, parameter.part_type);
+  if (parameter.record_type == VariableParameter::kArticulatedPart) {
+    out(parameter.value);
+  } else {
+    out(parameter.attached);
+  }
+  return bytes;
+}
+
+bool EmitterReader::NextSystem(EmitterSystem& system) {
+  EmitterBeam stepped_over;
+  while (NextBeam(stepped_over)) {
+  }
+  if (systems_left_ == 0 || !wire_.fits()) return false;
+  --systems_left_;
+  system = {};
+  Lay(wire_, system);
+  beams_left_ = system.beam_count;
+  return wire_.fits();
+}
+
+bool EmitterReader::NextBeam(EmitterBeam& beam) {
+  if (beams_left_ == 0 || !wire_.fits()) return false;
+  --beams_left_;
+  beam = {};
+  Lay(wire_, beam);
+  return wire_.fits();
 }
 
 bool DatagramReader::Next(Pdu& pdu) {
@@ -229,15 +197,19 @@ bool DatagramReader::Next(Pdu& pdu) {
         rest.size() < kHeaderBytes || std::ranges::all_of(rest, [](uint8_t byte) { return byte == 0; });
     if (padding) return false;
   }
-  pdu = Pdu{};
   pdu.offset = offset_;
+  pdu.verdict = Verdict::kRejected;
+  pdu.rejection = Rejection::kNone;
+  pdu.header = {};
+  pdu.body = std::monostate();
   done_ = true;
   if (rest.size() < kHeaderBytes) {
     pdu.rejection = Rejection::kShortHeader;
     return true;
   }
   WireReader in(rest);
-  pdu.header = ReadHeader(in);
+  Lay(in, pdu.header);
+  if (pdu.header.version < 7) pdu.header.status = 0;
   if (pdu.header.length < kHeaderBytes) {
     pdu.rejection = Rejection::kLengthUnderHeader;
   } else if (pdu.header.length > rest.size()) {
@@ -250,43 +222,37 @@ bool DatagramReader::Next(Pdu& pdu) {
   return true;
 }
 
-size_t EncodeEntityState(PduHeader header, const EntityState& state, std::span<uint8_t> out) {
-  if (out.size() < kEntityStateBytes) return 0;
-  header.type = kEntityState;
-  header.family = kEntityInformationFamily;
-  header.length = kEntityStateBytes;
-  WireWriter writer(out);
-  WriteHeader(writer, header);
-  writer.Id(state.id);
-  writer.U8(state.force);
-  writer.U8(0);
-  writer.Type(state.type);
-  writer.Type(state.alternative_type);
-  writer.Vec3(state.velocity_mps);
-  writer.DVec3(state.position_ecef);
-  writer.Vec3(state.orientation_rad);
-  writer.U32(state.appearance);
-  writer.U8(state.model);
-  writer.Bytes(state.model_parameters);
-  writer.Vec3(state.acceleration_mps2);
-  writer.Vec3(state.angular_velocity_radps);
-  writer.U8(state.character_set);
-  writer.Bytes(state.marking);
-  writer.U32(state.capabilities);
-  return writer.at();
+template <typename Body>
+size_t EncodePdu(PduHeader header, const Body& body, std::span<uint8_t> out) {
+  using Traits = PduTraits<Body>;
+  if (out.size() < Traits::kFixedBytes) return 0;
+  WireWriter writer(out.subspan(kHeaderBytes));
+  Lay(writer, body);
+  const size_t length = kHeaderBytes + writer.at();
+  if (!writer.fits() || length > UINT16_MAX) return 0;
+  header.type = Traits::kType;
+  header.family = Traits::kFamily;
+  header.length = static_cast<uint16_t>(length);
+  if (header.version < 7) header.status = 0;
+  WireWriter head(out);
+  Lay(head, header);
+  return length;
 }
 
-size_t EncodeRemoveEntity(PduHeader header, const RemoveEntity& remove, std::span<uint8_t> out) {
-  if (out.size() < kRemoveEntityBytes) return 0;
-  header.type = kRemoveEntity;
-  header.family = kSimulationManagementFamily;
-  header.length = kRemoveEntityBytes;
-  WireWriter writer(out);
-  WriteHeader(writer, header);
-  writer.Id(remove.originating);
-  writer.Id(remove.removed);
-  writer.U32(remove.request);
-  return writer.at();
-}
+template size_t EncodePdu(PduHeader, const EntityState&, std::span<uint8_t>);
+template size_t EncodePdu(PduHeader, const EntityStateUpdate&, std::span<uint8_t>);
+template size_t EncodePdu(PduHeader, const Fire&, std::span<uint8_t>);
+template size_t EncodePdu(PduHeader, const Detonation&, std::span<uint8_t>);
+template size_t EncodePdu(PduHeader, const Collision&, std::span<uint8_t>);
+template size_t EncodePdu(PduHeader, const CreateEntity&, std::span<uint8_t>);
+template size_t EncodePdu(PduHeader, const RemoveEntity&, std::span<uint8_t>);
+template size_t EncodePdu(PduHeader, const StartResume&, std::span<uint8_t>);
+template size_t EncodePdu(PduHeader, const StopFreeze&, std::span<uint8_t>);
+template size_t EncodePdu(PduHeader, const ElectromagneticEmission&, std::span<uint8_t>);
+template size_t EncodePdu(PduHeader, const Designator&, std::span<uint8_t>);
+template size_t EncodePdu(PduHeader, const Transmitter&, std::span<uint8_t>);
+template size_t EncodePdu(PduHeader, const Signal&, std::span<uint8_t>);
+template size_t EncodePdu(PduHeader, const EnvironmentalProcess&, std::span<uint8_t>);
+template size_t EncodePdu(PduHeader, const GriddedData&, std::span<uint8_t>);
 
 }  // namespace belvedere::dis

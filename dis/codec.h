@@ -5,14 +5,15 @@
 // length cannot be trusted the rest of the datagram is given up; after one with bad contents it goes on with the next.
 // Fewer bytes than a header, or zeros only, behind the last PDU are padding.
 //
-// Refused are values that no receiver could use: positions, velocities and orientations that are not finite (for
-// accelerations and angular velocities: only if the model uses them, otherwise they read as 0), positions beyond
-// kFarthestPosition_m, entities numbered 0 ("none") or with 0xFFFF ("all") or 0xFFFE in their id.
+// Refused are values that no receiver could use, of the PDUs that the picture is made of: positions, velocities and
+// orientations that are not finite (for accelerations and angular velocities: only if the model uses them, otherwise
+// they read as 0), positions beyond kFarthestPosition_m, entities numbered 0 ("none") or with 0xFFFF ("all") or 0xFFFE
+// in their id.
 //
 // Threads: pure functions; a reader belongs to its user.
 #pragma once
 
-#include "dis/pdu.h"
+#include "dis/pdu_layout.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -21,12 +22,7 @@
 
 namespace belvedere::dis {
 
-inline constexpr size_t kHeaderBytes = 12;
-inline constexpr size_t kEntityStateBytes = 144;  // without variable parameters
-inline constexpr size_t kEntityStateUpdateBytes = 72;
-inline constexpr size_t kFireBytes = 96;
-inline constexpr size_t kDetonationBytes = 104;
-inline constexpr size_t kRemoveEntityBytes = 28;
+inline constexpr size_t kEntityStateBytes = PduTraits<EntityState>::kFixedBytes;  // without variable parameters
 inline constexpr size_t kLongestPdu = 8192;
 inline constexpr double kFarthestPosition_m = 1e20;
 
@@ -36,7 +32,7 @@ enum class Rejection : uint8_t {
   kLengthUnderHeader,   // the length field is less than a header
   kLengthOverDatagram,  // the length field is more than what is there
   kShortBody,           // the length field is less than this type of PDU takes
-  kParametersDoNotFit,  // more variable parameters than the length has room for
+  kRecordsDoNotFit,     // more variable parameters, beams, ... than the length has room for
   kNotFinite,
   kPositionOutOfRange,
   kBadEntityId,
@@ -73,9 +69,10 @@ class DatagramReader {
   bool done_ = false;
 };
 
-// Writes the PDU and returns its length, or 0 when `out` is too small. The header's type, family and length are filled
-// in; its version must be 5, 6 or 7. Variable parameters are not written.
-size_t EncodeEntityState(PduHeader header, const EntityState& state, std::span<uint8_t> out);
-size_t EncodeRemoveEntity(PduHeader header, const RemoveEntity& remove, std::span<uint8_t> out);
+// Writes the PDU and returns its length, or 0 when `out` is too small or the PDU would be longer than its header can
+// say. The header's type, family and length are filled in; its version must be 5, 6 or 7. Every body of PduBody but
+// monostate can be written.
+template <typename Body>
+size_t EncodePdu(PduHeader header, const Body& body, std::span<uint8_t> out);
 
 }  // namespace belvedere::dis

@@ -104,31 +104,20 @@ void BuildPacket(Bytes datagram, const UdpAddress& from, const UdpAddress& to, s
   const Bytes source(from.bytes.data(), address_bytes), target(to.bytes.data(), address_bytes);
   WireWriter ip(bytes.first(ip_bytes));
   if (from.v6) {
-    ip.U32(0x60000000);
-    ip.U16(static_cast<uint16_t>(udp_bytes));
-    ip.U8(kUdp);
-    ip.U8(64);
+    ip(uint32_t{0x60000000}, static_cast<uint16_t>(udp_bytes), kUdp, uint8_t{64});
   } else {
-    ip.U16(0x4500);
-    ip.U16(static_cast<uint16_t>(ip_bytes + udp_bytes));
-    ip.U32(0);
-    ip.U8(64);
-    ip.U8(kUdp);
-    ip.U16(0);
+    ip(uint16_t{0x4500}, static_cast<uint16_t>(ip_bytes + udp_bytes), uint32_t{0}, uint8_t{64}, kUdp, uint16_t{0});
   }
   ip.Bytes(source);
   ip.Bytes(target);
-  if (!from.v6) WireWriter(bytes.subspan(10, 2)).U16(Folded(AddToSum(0, bytes.first(ip_bytes))));
+  if (!from.v6) WireWriter(bytes.subspan(10, 2))(Folded(AddToSum(0, bytes.first(ip_bytes))));
   WireWriter udp(bytes.subspan(ip_bytes));
-  udp.U16(from.port);
-  udp.U16(to.port);
-  udp.U16(static_cast<uint16_t>(udp_bytes));
-  udp.U16(0);
+  udp(from.port, to.port, static_cast<uint16_t>(udp_bytes), uint16_t{0});
   udp.Bytes(datagram);
   uint32_t sum = AddToSum(AddToSum(kUdp, source), target) + static_cast<uint32_t>(udp_bytes);
   sum = AddToSum(sum, bytes.subspan(ip_bytes));
   const uint16_t checksum = Folded(sum);
-  WireWriter(bytes.subspan(ip_bytes + 6, 2)).U16(checksum == 0 ? uint16_t{0xFFFF} : checksum);
+  WireWriter(bytes.subspan(ip_bytes + 6, 2))(checksum == 0 ? uint16_t{0xFFFF} : checksum);
 }
 
 }  // namespace
@@ -145,7 +134,7 @@ std::optional<std::span<const uint8_t>> UdpPayload(Bytes frame, uint32_t link_ty
 }
 
 uint32_t PcapReader::Word(Bytes bytes, size_t at) const {
-  const uint32_t big = WireReader(bytes, at).U32();
+  const uint32_t big = WireReader(bytes, at).Next<uint32_t>();
   return big_endian_ ? big : (big << 24 | (big & 0xFF00) << 8 | (big >> 8 & 0xFF00) | big >> 24);
 }
 
@@ -159,7 +148,7 @@ Result<PcapReader> PcapReader::Open(const std::filesystem::path& path) {
   std::array<uint8_t, kFileHeaderBytes> header{};
   reader.file_.read(reinterpret_cast<char*>(header.data()), kFileHeaderBytes);
   const auto got = static_cast<size_t>(reader.file_.gcount());
-  const uint32_t first = WireReader(header).U32();
+  const uint32_t first = WireReader(header).Next<uint32_t>();
   if (got >= 4 && first == kMagicPcapng) {
     return Status::Error("{}: this is a pcapng file; convert it with 'editcap -F pcap'", path.string());
   }

@@ -29,14 +29,14 @@ Json Parts(const VariableParameters& parameters) {
   for (size_t i = 0; i < parameters.size(); ++i) {
     const VariableParameter parameter = parameters[i];
     Json part = {{"record_type", parameter.record_type}};
-    if (parameter.record_type <= 1) {
+    if (parameter.record_type <= VariableParameter::kAttachedPart) {
       part["change"] = parameter.change;
       part["attached_to"] = parameter.attached_to;
     }
-    if (parameter.record_type == 0) {
+    if (parameter.record_type == VariableParameter::kArticulatedPart) {
       part["part_type"] = parameter.part_type;
       part["value"] = std::isfinite(parameter.value) ? Json(parameter.value) : Json(nullptr);
-    } else if (parameter.record_type == 1) {
+    } else if (parameter.record_type == VariableParameter::kAttachedPart) {
       part["station"] = parameter.part_type;
       part["entity_type"] = parameter.attached.ToString();
     }
@@ -106,6 +106,133 @@ void AddBody(Json& line, const RemoveEntity& remove) {
   line["originating"] = remove.originating.ToString();
   line["entity"] = remove.removed.ToString();
   line["request"] = remove.request;
+}
+
+void AddBody(Json& line, const CreateEntity& create) {
+  line["originating"] = create.originating.ToString();
+  line["entity"] = create.created.ToString();
+  line["request"] = create.request;
+}
+
+void AddBody(Json& line, const Collision& collision) {
+  line["issuing"] = collision.issuing.ToString();
+  line["colliding"] = collision.colliding.ToString();
+  line["event"] = collision.event.ToString();
+  line["collision_type"] = collision.type;
+  line["velocity_mps"] = Triple(collision.velocity_mps);
+  line["mass_kg"] = collision.mass_kg;
+  line["position_in_entity_m"] = Triple(collision.position_in_entity_m);
+}
+
+Json Clock(const ClockTime& time) {
+  return {{"hours", time.hours}, {"past_hour_s", SecondsPastHour(time.past_hour)}};
+}
+
+void AddBody(Json& line, const StartResume& start) {
+  line["originating"] = start.originating.ToString();
+  line["entity"] = start.receiving.ToString();
+  line["real_world"] = Clock(start.real_world);
+  line["simulation"] = Clock(start.simulation);
+  line["request"] = start.request;
+}
+
+void AddBody(Json& line, const StopFreeze& stop) {
+  line["originating"] = stop.originating.ToString();
+  line["entity"] = stop.receiving.ToString();
+  line["real_world"] = Clock(stop.real_world);
+  line["reason"] = stop.reason;
+  line["frozen_behaviour"] = stop.frozen_behaviour;
+  line["request"] = stop.request;
+}
+
+Json Beam(const EmitterBeam& beam) {
+  return {{"number", beam.number},
+          {"parameter_index", beam.parameter_index},
+          {"frequency_hz", beam.frequency_hz},
+          {"effective_power_dbm", beam.effective_power_dbm},
+          {"pulse_rate_hz", beam.pulse_rate_hz},
+          {"azimuth_rad", beam.azimuth_rad},
+          {"azimuth_sweep_rad", beam.azimuth_sweep_rad},
+          {"elevation_rad", beam.elevation_rad},
+          {"elevation_sweep_rad", beam.elevation_sweep_rad},
+          {"function", beam.function},
+          {"targets", beam.target_count}};
+}
+
+void AddBody(Json& line, const ElectromagneticEmission& emission) {
+  line["entity"] = emission.emitting.ToString();
+  line["event"] = emission.event.ToString();
+  line["state_update"] = emission.state_update;
+  Json systems = Json::array();
+  EmitterReader reader(emission);
+  for (EmitterSystem system; reader.NextSystem(system);) {
+    Json one = {{"name", system.name},
+                {"function", system.function},
+                {"number", system.number},
+                {"position_in_entity_m", Triple(system.position_in_entity_m)}};
+    Json beams = Json::array();
+    for (EmitterBeam beam; reader.NextBeam(beam);) beams.push_back(Beam(beam));
+    one["beams"] = std::move(beams);
+    systems.push_back(std::move(one));
+  }
+  line["systems"] = std::move(systems);
+}
+
+void AddBody(Json& line, const Designator& designator) {
+  line["designating"] = designator.designating.ToString();
+  line["designated"] = designator.designated.ToString();
+  line["code_name"] = designator.code_name;
+  line["code"] = designator.code;
+  line["power_w"] = designator.power_w;
+  line["wavelength_um"] = designator.wavelength_um;
+  line["spot_in_target_m"] = Triple(designator.spot_in_target_m);
+  line["position_m"] = Triple(designator.spot_ecef);
+  line["drm"] = designator.model;
+  line["acceleration_mps2"] = Triple(designator.acceleration_mps2);
+}
+
+void AddBody(Json& line, const Transmitter& transmitter) {
+  line["entity"] = transmitter.id.ToString();
+  line["radio"] = transmitter.radio;
+  line["radio_type"] = transmitter.radio_type.ToString();
+  line["state"] = transmitter.state;
+  line["input_source"] = transmitter.input_source;
+  line["antenna_m"] = Triple(transmitter.antenna_ecef);
+  line["antenna_in_entity_m"] = Triple(transmitter.antenna_in_entity_m);
+  line["frequency_hz"] = transmitter.frequency_hz;
+  line["bandwidth_hz"] = transmitter.bandwidth_hz;
+  line["power_dbm"] = transmitter.power_dbm;
+}
+
+void AddBody(Json& line, const Signal& signal) {
+  line["entity"] = signal.id.ToString();
+  line["radio"] = signal.radio;
+  line["encoding_scheme"] = signal.encoding_scheme;
+  line["tdl_type"] = signal.tdl_type;
+  line["sample_rate_hz"] = signal.sample_rate_hz;
+  line["data_bits"] = signal.data_bits;
+  line["samples"] = signal.samples;
+}
+
+void AddBody(Json& line, const EnvironmentalProcess& process) {
+  line["entity"] = process.id.ToString();
+  line["environment_type"] = process.type.ToString();
+  line["model"] = process.model;
+  line["process_status"] = process.status;
+  line["records"] = process.record_count;
+  line["sequence"] = process.sequence;
+}
+
+void AddBody(Json& line, const GriddedData& grid) {
+  line["entity"] = grid.id.ToString();
+  line["field"] = grid.field;
+  line["pdu_number"] = grid.pdu_number;
+  line["pdu_total"] = grid.pdu_total;
+  line["coordinate_system"] = grid.coordinate_system;
+  line["axes"] = grid.axis_count;
+  line["environment_type"] = grid.type.ToString();
+  line["orientation_rad"] = Triple(grid.orientation_rad);
+  line["values"] = grid.value_count;
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ void TrafficStream::Emit(size_t index, double time_s) {
   header.timestamp = MakeTimestamp(time_s + (absolute ? options_.utc_at_start_s : 0.0), absolute);
   const size_t at = bytes_.size();
   bytes_.resize(at + kEntityStateBytes);
-  EncodeEntityState(header, state, std::span(bytes_).subspan(at));
+  EncodePdu(header, state, std::span(bytes_).subspan(at));
   ++pdus_;
 }
 

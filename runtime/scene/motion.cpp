@@ -1,6 +1,7 @@
 #include "runtime/scene/motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -19,28 +20,48 @@ struct RotationSeries {
   double second1, second2;
 };
 
-RotationSeries SmallAngleSeries(double x) {
-  // sin x / x = sum (-1)^k x^2k / (2k+1)! and so on, integrated term by term.
-  RotationSeries sum{};
-  double term = 1.0;  // (-1)^k x^2k / (2k)!
-  for (int k = 0; k < 7; ++k) {
-    const double n = 2.0 * k;
-    const double odd = term / (n + 1);
-    const double even = odd / (n + 2);
-    sum.exp1 += odd;
-    sum.exp2 += even;
-    sum.first1 += even;
-    sum.first2 += even / (n + 3);
-    sum.second1 += odd / (n + 3);
-    sum.second2 += even / (n + 4);
-    term *= -x * x / ((n + 1) * (n + 2));
+// The series of the six in x^2: sin x / x = sum (-1)^k x^2k / (2k+1)! and so on, integrated term by term.
+constexpr int kTerms = 7;
+struct SeriesTerms {
+  std::array<double, kTerms> exp1{}, exp2{}, first2{}, second1{}, second2{};
+};
+constexpr SeriesTerms MakeTerms() {
+  SeriesTerms terms;
+  double term = 1.0;  // (-1)^k / (2k)!
+  for (size_t k = 0; k < kTerms; ++k) {
+    const double n = 2.0 * static_cast<double>(k);
+    terms.exp1[k] = term / (n + 1);
+    terms.exp2[k] = terms.exp1[k] / (n + 2);
+    terms.first2[k] = terms.exp2[k] / (n + 3);
+    terms.second1[k] = terms.exp1[k] / (n + 3);
+    terms.second2[k] = terms.exp2[k] / (n + 4);
+    term *= -1.0 / ((n + 1) * (n + 2));
   }
+  return terms;
+}
+
+double Sum(const std::array<double, kTerms>& terms, double square) {
+  double sum = 0;
+  for (size_t k = kTerms; k-- > 0;) sum = sum * square + terms[k];
   return sum;
 }
 
-RotationSeries Series(double x) {
-  if (x < 0.25) return SmallAngleSeries(x);
-  const double sine = std::sin(x), cosine = std::cos(x), square = x * x;
+RotationSeries SmallAngleSeries(double square) {
+  static constexpr SeriesTerms kSeries = MakeTerms();
+  RotationSeries sum{};
+  sum.exp1 = Sum(kSeries.exp1, square);
+  sum.exp2 = Sum(kSeries.exp2, square);
+  sum.first1 = sum.exp2;
+  sum.first2 = Sum(kSeries.first2, square);
+  sum.second1 = Sum(kSeries.second1, square);
+  sum.second2 = Sum(kSeries.second2, square);
+  return sum;
+}
+
+RotationSeries SeriesOf(const glm::dvec3& turn_rad) {
+  const double square = glm::dot(turn_rad, turn_rad);
+  if (square < 0.25 * 0.25) return SmallAngleSeries(square);
+  const double x = std::sqrt(square), sine = std::sin(x), cosine = std::cos(x);
   RotationSeries c{};
   c.exp1 = sine / x;
   c.exp2 = (1.0 - cosine) / square;
@@ -57,6 +78,11 @@ glm::dvec3 Apply(double identity, double once, double twice, const glm::dvec3& t
   return identity * vector + once * crossed + twice * glm::cross(turn, crossed);
 }
 
+glm::dmat3 Exponential(const RotationSeries& c, const glm::dvec3& turn) {
+  return {Apply(1.0, c.exp1, c.exp2, turn, {1, 0, 0}), Apply(1.0, c.exp1, c.exp2, turn, {0, 1, 0}),
+          Apply(1.0, c.exp1, c.exp2, turn, {0, 0, 1})};
+}
+
 struct Advance {
   glm::dvec3 position_ecef, velocity_mps;  // velocity in the model's own axes
   glm::dmat3 ecef_from_body;
@@ -69,10 +95,10 @@ Advance AdvanceBy(const KinematicState& state, double dt_s) {
   if (state.model == DeadReckoning::kStatic) return now;
   const glm::dvec3 turn = ModelRotates(state.model) ? state.angular_velocity_radps * dt : glm::dvec3(0.0);
   const glm::dvec3 acceleration = ModelAccelerates(state.model) ? state.acceleration_mps2 : glm::dvec3(0.0);
-  if (ModelRotates(state.model)) now.ecef_from_body = start * RotationBy(turn);
+  const RotationSeries c = SeriesOf(turn);
+  if (ModelRotates(state.model)) now.ecef_from_body = start * Exponential(c, turn);
   now.velocity_mps += acceleration * dt;
   if (ModelUsesBodyAxes(state.model)) {
-    const RotationSeries c = Series(glm::length(turn));
     now.position_ecef += start * (Apply(dt, dt * c.first1, dt * c.first2, turn, state.velocity_mps) +
                                   dt * Apply(0.5 * dt, dt * c.second1, dt * c.second2, turn, acceleration));
   } else {
@@ -145,9 +171,7 @@ EulerAngles ToEulerAngles(const glm::dmat3& ecef_from_body) {
 }
 
 glm::dmat3 RotationBy(const glm::dvec3& turn_rad) {
-  const RotationSeries c = Series(glm::length(turn_rad));
-  return {Apply(1.0, c.exp1, c.exp2, turn_rad, {1, 0, 0}), Apply(1.0, c.exp1, c.exp2, turn_rad, {0, 1, 0}),
-          Apply(1.0, c.exp1, c.exp2, turn_rad, {0, 0, 1})};
+  return Exponential(SeriesOf(turn_rad), turn_rad);
 }
 
 bool ClampMotion(KinematicState& state) {

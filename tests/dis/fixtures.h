@@ -30,7 +30,7 @@ inline EntityState SomeEntity(uint16_t entity = 7) {
 
 inline std::vector<uint8_t> Encoded(const EntityState& state, PduHeader header = {}) {
   std::vector<uint8_t> bytes(kEntityStateBytes);
-  bytes.resize(EncodeEntityState(header, state, bytes));
+  bytes.resize(EncodePdu(header, state, bytes));
   return bytes;
 }
 

@@ -45,9 +45,9 @@ TEST_F(IntakeTest, AnEntityStateBecomesARecord) {
 TEST_F(IntakeTest, EveryPduIsCountedOnce) {
   std::vector<uint8_t> bundle = Encoded(SomeEntity());
   const auto append = [&](const std::vector<uint8_t>& more) { bundle.insert(bundle.end(), more.begin(), more.end()); };
-  std::vector<uint8_t> radio = Encoded(SomeEntity());
-  radio[2] = 25;
-  append(radio);
+  std::vector<uint8_t> attributes = Encoded(SomeEntity());
+  attributes[2] = 72;
+  append(attributes);
   append(Encoded(SomeEntity(0)));
   append(Encoded(SomeEntity(), {.exercise = 2}));
   append(Encoded(SomeEntity(), {.version = 8}));
@@ -55,7 +55,7 @@ TEST_F(IntakeTest, EveryPduIsCountedOnce) {
   EXPECT_EQ(counters().datagrams, 1u);
   EXPECT_EQ(counters().received, 5u);
   EXPECT_EQ(counters().accepted, 1u);
-  EXPECT_EQ(counters().ignored_type[25], 1u);
+  EXPECT_EQ(counters().ignored_type[72], 1u);
   EXPECT_EQ(counters().rejected[static_cast<size_t>(Rejection::kBadEntityId)], 1u);
   EXPECT_EQ(counters().filtered, 1u);
   EXPECT_EQ(counters().ignored_version, 1u);
@@ -65,14 +65,14 @@ TEST_F(IntakeTest, EveryPduIsCountedOnce) {
 
 TEST_F(IntakeTest, RemoveEntityTakesOutOneOrAll) {
   for (uint16_t entity = 1; entity <= 3; ++entity) Take(Encoded(SomeEntity(entity)));
-  std::vector<uint8_t> bytes(kRemoveEntityBytes);
-  EncodeRemoveEntity({}, {{}, {1, 3001, 2}, 0}, bytes);
+  std::vector<uint8_t> bytes(PduTraits<RemoveEntity>::kFixedBytes);
+  EncodePdu({}, RemoveEntity{{}, {1, 3001, 2}, 0}, bytes);
   Take(bytes);
   EXPECT_EQ(Snapshot()->objects.size(), 2u);
-  EncodeRemoveEntity({}, {{}, {2, 0xFFFF, 0xFFFF}, 0}, bytes);
+  EncodePdu({}, RemoveEntity{{}, {2, 0xFFFF, 0xFFFF}, 0}, bytes);
   Take(bytes);
   EXPECT_EQ(Snapshot()->objects.size(), 2u);
-  EncodeRemoveEntity({}, {{}, {1, 0xFFFF, 0xFFFF}, 0}, bytes);
+  EncodePdu({}, RemoveEntity{{}, {1, 0xFFFF, 0xFFFF}, 0}, bytes);
   Take(bytes);
   EXPECT_TRUE(Snapshot()->objects.empty());
 }
