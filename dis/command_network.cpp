@@ -58,7 +58,10 @@ double CpuSeconds() {
 nlohmann::ordered_json ToJson(const ReceiverCounters& counters, double seconds) {
   using Json = nlohmann::ordered_json;
   const IntakeCounters& intake = counters.intake;
-  Json rejected = Json::object(), ignored = Json::object();
+  Json rejected = Json::object(), ignored = Json::object(), refused = Json::object();
+  for (size_t i = 0; i < intake.refused.size(); ++i) {
+    if (intake.refused[i] > 0) refused[std::string(RefusalText(static_cast<Refusal>(i)))] = intake.refused[i];
+  }
   for (size_t i = 0; i < intake.rejected.size(); ++i) {
     if (intake.rejected[i] > 0) rejected[std::string(RejectionText(static_cast<Rejection>(i)))] = intake.rejected[i];
   }
@@ -76,6 +79,8 @@ nlohmann::ordered_json ToJson(const ReceiverCounters& counters, double seconds) 
           {"ignored", ignored},
           {"ignored_total", intake.ignored_total()},
           {"filtered", intake.filtered},
+          {"refused", refused},
+          {"refused_total", intake.refused_total()},
           {"entities_alive", counters.objects.alive},
           {"entities_most", counters.objects.most_alive},
           {"entities_timed_out", counters.objects.timed_out},
@@ -144,7 +149,10 @@ Status Listen(ListenCommand command) {
   const auto listen = ParseEndpoint(command.listen);
   if (!listen.ok()) return listen.status();
   command.options.network.listen = *listen;
-  if (command.exercise >= 0) command.options.exercise = static_cast<uint8_t>(command.exercise);
+  if (command.exercise >= 0) command.options.intake.exercise = static_cast<uint8_t>(command.exercise);
+  auto sources = ParseAddressRanges(command.sources);
+  if (!sources.ok()) return Status::Error("--source: {}", sources.message());
+  command.options.intake.admission.sources = std::move(*sources);
   Interruption interruption;
   const Clock& clock = Clock::System();
   ObjectTable table;

@@ -34,6 +34,7 @@ struct ListenCommand {
   std::string listen;
   ReceiverOptions options;
   int exercise = -1;  // -1: all
+  std::vector<std::string> sources;
   double seconds = 0;
   bool json = false;
 };

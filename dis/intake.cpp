@@ -1,7 +1,5 @@
 #include "dis/intake.h"
 
-#include "dis/timestamp.h"
-
 #include <glm/vec3.hpp>
 #include <numeric>
 
@@ -22,6 +20,11 @@ bool Matches(uint16_t wanted, uint16_t number) {
 
 uint64_t IntakeCounters::rejected_total() const {
   return std::accumulate(rejected.begin(), rejected.end(), uint64_t{0});
+}
+
+uint64_t IntakeCounters::refused_total() const {
+  const uint64_t all = std::accumulate(refused.begin(), refused.end(), uint64_t{0});
+  return all - refused[static_cast<size_t>(Refusal::kSource)];
 }
 
 uint64_t IntakeCounters::ignored_total() const {
@@ -53,9 +56,13 @@ ObjectRecord ToRecord(const EntityState& state, double state_time_s, double rece
   return record;
 }
 
-void Intake::Take(std::span<const uint8_t> datagram, double arrival_s, double utc_s) {
+void Intake::Take(std::span<const uint8_t> datagram, const Arrival& arrival) {
   ++counters_.datagrams;
   counters_.bytes += datagram.size();
+  if (!admission_.AdmitsSource(arrival.from)) {
+    ++counters_.refused[static_cast<size_t>(Refusal::kSource)];
+    return;
+  }
   DatagramReader reader(datagram);
   for (Pdu pdu; reader.Next(pdu);) {
     ++counters_.received;
@@ -68,39 +75,77 @@ void Intake::Take(std::span<const uint8_t> datagram, double arrival_s, double ut
       ++counters_.filtered;
     } else if (pdu.verdict == Verdict::kIgnoredType) {
       ++counters_.ignored_type[pdu.header.type];
+    } else if (const std::optional<Refusal> refusal = Apply(pdu, arrival)) {
+      ++counters_.refused[static_cast<size_t>(*refusal)];
     } else {
       ++counters_.accepted;
-      Apply(pdu, arrival_s, utc_s);
     }
   }
 }
 
-void Intake::Apply(const Pdu& pdu, double arrival_s, double utc_s) {
-  if (const auto* state = std::get_if<EntityState>(&pdu.body)) {
-    table_.Put(ToRecord(*state, StateTime(pdu.header.timestamp, arrival_s, utc_s), arrival_s));
-  } else if (const auto* update = std::get_if<EntityStateUpdate>(&pdu.body)) {
-    ObjectChange change;
-    change.position_ecef = update->position_ecef;
-    change.velocity_mps = glm::dvec3(update->velocity_mps);
-    change.orientation = ToAngles(update->orientation_rad);
-    change.appearance = update->appearance;
-    change.time_s = StateTime(pdu.header.timestamp, arrival_s, utc_s);
-    if (!table_.Change(update->id, change, arrival_s)) ++counters_.unknown_updates;
-  } else if (const auto* remove = std::get_if<RemoveEntity>(&pdu.body)) {
-    Remove(remove->removed);
-  }
+std::optional<Refusal> Intake::Apply(const Pdu& pdu, const Arrival& arrival) {
+  if (!admission_.AdmitsPdu(arrival.from.host(), arrival.time_s)) return Refusal::kRate;
+  if (const auto* state = std::get_if<EntityState>(&pdu.body)) return Apply(*state, pdu.header, arrival);
+  if (const auto* update = std::get_if<EntityStateUpdate>(&pdu.body)) return Apply(*update, pdu.header, arrival);
+  if (const auto* remove = std::get_if<RemoveEntity>(&pdu.body))
+    return Obey(Command::kRemove, remove->removed, arrival);
+  if (const auto* stop = std::get_if<StopFreeze>(&pdu.body)) return Obey(Command::kHold, stop->receiving, arrival);
+  if (const auto* start = std::get_if<StartResume>(&pdu.body))
+    return Obey(Command::kRelease, start->receiving, arrival);
+  return std::nullopt;
 }
 
-void Intake::Remove(const EntityId& removed) {
-  if (removed.site != kAll && removed.application != kAll && removed.entity != kAll) {
-    table_.Remove(removed);
-    return;
+double Intake::StateTime(const EntityId& id, uint32_t timestamp, const Arrival& arrival) {
+  const SenderClocks::Sender sender{arrival.from.host(), id.site, id.application};
+  return clocks_.StateTime(sender, timestamp, arrival.time_s, arrival.utc_s);
+}
+
+std::optional<Refusal> Intake::Apply(const EntityState& state, const PduHeader& header, const Arrival& arrival) {
+  const AdmissionOptions& options = admission_.options();
+  if (options.refuse_absurd && PositionFlags(state.position_ecef) != 0) return Refusal::kAbsurd;
+  const uint64_t host = arrival.from.host();
+  if (options.new_entities_per_s > 0 && !table_.Find(state.id) && !admission_.AdmitsNewEntity(host, arrival.time_s)) {
+    return Refusal::kNewEntity;
   }
-  for (const EntityId& id : table_.Ids()) {
-    const bool matches = Matches(removed.site, id.site) && Matches(removed.application, id.application) &&
-                         Matches(removed.entity, id.entity);
-    if (matches) table_.Remove(id);
+  ObjectRecord record = ToRecord(state, StateTime(state.id, header.timestamp, arrival), arrival.time_s);
+  record.protocol_version = header.version;
+  record.source = host;
+  table_.Put(record);
+  return std::nullopt;
+}
+
+std::optional<Refusal> Intake::Apply(const EntityStateUpdate& update, const PduHeader& header, const Arrival& arrival) {
+  if (admission_.options().refuse_absurd && PositionFlags(update.position_ecef) != 0) return Refusal::kAbsurd;
+  ObjectChange change;
+  change.position_ecef = update.position_ecef;
+  change.velocity_mps = glm::dvec3(update.velocity_mps);
+  change.orientation = ToAngles(update.orientation_rad);
+  change.appearance = update.appearance;
+  change.time_s = StateTime(update.id, header.timestamp, arrival);
+  if (!table_.Change(update.id, change, arrival.time_s)) ++counters_.unknown_updates;
+  return std::nullopt;
+}
+
+std::optional<Refusal> Intake::Obey(Command command, const EntityId& named, const Arrival& arrival) {
+  const bool one = named.site != kAll && named.application != kAll && named.entity != kAll;
+  bool refused = false;
+  for (const EntityId& id : one ? std::vector<EntityId>{named} : table_.Ids()) {
+    const bool matches =
+        Matches(named.site, id.site) && Matches(named.application, id.application) && Matches(named.entity, id.entity);
+    if (!matches) continue;
+    const std::optional<ObjectRecord> known = table_.Find(id);
+    if (!known) continue;
+    if (!admission_.AdmitsCommand(arrival.from, known->source)) {
+      refused = true;
+      continue;
+    }
+    switch (command) {
+      case Command::kRemove: table_.Remove(id); break;
+      case Command::kHold: table_.Hold(id, arrival.time_s); break;
+      case Command::kRelease: table_.Release(id, arrival.time_s); break;
+    }
   }
+  return refused ? std::optional(Refusal::kStranger) : std::nullopt;
 }
 
 }  // namespace belvedere::dis

@@ -50,6 +50,13 @@ void AddListen(CLI::App& app, Chosen& chosen, ListenCommand& listen) {
   command->add_option("ADDRESS", listen.listen, "ADDR:PORT")->required();
   command->add_option("--seconds", listen.seconds, "how long; 0: until interrupted")->check(CLI::NonNegativeNumber);
   command->add_option("--exercise", listen.exercise, "take only this exercise")->check(CLI::Range(0, 255));
+  AdmissionOptions& admission = listen.options.intake.admission;
+  command->add_option("--source", listen.sources, "take only from such an address or range (10.0.0.0/8), repeatable");
+  command->add_flag("--refuse-strangers", admission.refuse_strangers,
+                    "Remove, Stop and Start only from the host that reports the entity");
+  command->add_flag("--refuse-absurd", admission.refuse_absurd, "refuse places that cannot be shown");
+  command->add_option("--most-pdus", admission.pdus_per_s, "PDUs a second from one host; 0: any number");
+  command->add_option("--most-new", admission.new_entities_per_s, "new entities a second from one host; 0: any number");
   command->add_option("--interface", listen.options.network.interface_address, "IPv4 address that joins a group");
   command
       ->add_option("--buffer", listen.options.network.receive_buffer_bytes, "receive buffer asked of the kernel, bytes")

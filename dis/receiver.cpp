@@ -8,10 +8,10 @@ namespace belvedere::dis {
 
 class Receiver::Sink final : public DatagramSink {
  public:
-  Sink(ObjectTable& table, std::optional<uint8_t> exercise) : table_(table), intake_(table, exercise) {}
+  Sink(ObjectTable& table, IntakeOptions options) : table_(table), intake_(table, std::move(options)) {}
 
   void TakeBatch(std::span<const Datagram> batch, double now_s, double utc_s) override {
-    for (const Datagram& datagram : batch) intake_.Take(datagram.bytes, now_s, utc_s);
+    for (const Datagram& datagram : batch) intake_.Take(datagram.bytes, {now_s, utc_s, datagram.from});
     MutexLock lock(mutex_);
     counters_ = intake_.counters();
   }
@@ -34,7 +34,7 @@ class Receiver::Sink final : public DatagramSink {
 };
 
 Receiver::Receiver(const ReceiverOptions& options, ObjectTable& table)
-    : table_(table), sink_(std::make_unique<Sink>(table, options.exercise)) {}
+    : table_(table), sink_(std::make_unique<Sink>(table, options.intake)) {}
 
 Receiver::~Receiver() {
   Stop();

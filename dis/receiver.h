@@ -8,13 +8,12 @@
 #include "dis/udp_listener.h"
 
 #include <memory>
-#include <optional>
 
 namespace belvedere::dis {
 
 struct ReceiverOptions {
   ListenOptions network{};
-  std::optional<uint8_t> exercise{};  // only PDUs of this one; nullopt: all
+  IntakeOptions intake{};
 };
 
 struct ReceiverCounters {

@@ -10,11 +10,4 @@ uint32_t MakeTimestamp(double seconds, bool absolute) {
   return static_cast<uint32_t>((units & 0x7FFFFFFF) << 1) | (absolute ? 1u : 0u);
 }
 
-double StateTime(uint32_t timestamp, double arrival_s, double utc_s) {
-  if (!IsAbsolute(timestamp)) return arrival_s;
-  const double transit_s = std::remainder(utc_s - SecondsPastHour(timestamp), 3600.0);
-  const bool believable = transit_s <= kLongestTransit_s && transit_s >= -kClockSkew_s;
-  return believable ? arrival_s - transit_s : arrival_s;
-}
-
 }  // namespace belvedere::dis

@@ -9,10 +9,10 @@
 #pragma once
 
 #include "dis/endpoint.h"
+#include "dis/udp_address.h"
 #include "runtime/base/clock.h"
 #include "runtime/base/status.h"
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -20,13 +20,6 @@
 #include <string>
 
 namespace belvedere::dis {
-
-// A numeric address and port as IP carries them; IPv4 in the first four bytes.
-struct UdpAddress {
-  std::array<uint8_t, 16> bytes{};
-  uint16_t port = 0;
-  bool v6 = false;
-};
 
 struct Datagram {
   std::span<const uint8_t> bytes;  // valid during the call only

@@ -23,6 +23,8 @@ Result<std::unique_ptr<Station>> Station::Start(const StationOptions& options, c
   if (Status status = station->StartPaging(options); !status.ok()) return status;
   ObjectTable::Options table;
   table.timeout_s = options.feed.timeout_s;
+  table.timeouts = options.feed.timeouts;
+  table.capacity = options.feed.most_entities;
   station->objects_ = std::make_unique<ObjectTable>(table);
   station->StartReceivers(options.feed);
   Result<std::unique_ptr<RenderThread>> render =
@@ -74,7 +76,7 @@ void Station::StartReceivers(const FeedSpec& feed) {
       dis::ReceiverOptions options;
       options.network.listen = *endpoint;
       options.network.interface_address = feed.interface_address;
-      options.exercise = feed.exercise;
+      options.intake = {feed.exercise, feed.admission};
       Result<std::unique_ptr<dis::Receiver>> receiver = dis::Receiver::Start(options, *objects_, clock_);
       status = receiver.status();
       if (receiver.ok()) receivers_.push_back(std::move(*receiver));

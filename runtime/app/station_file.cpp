@@ -104,12 +104,55 @@ WindowSpec ReadWindow(SettingsTable& table, size_t number) {
   return window;
 }
 
+TimeoutRule ReadTimeout(SettingsTable& table) {
+  TimeoutRule rule;
+  if (const auto types = table.String("entity_type")) {
+    const std::optional<EntityPattern> pattern = EntityPattern::Parse(*types);
+    if (pattern) rule.types = *pattern;
+    if (!pattern) table.Complain("entity_type", fmt::format("is \"{}\", but must be like \"1.2.*.57\"", *types));
+  }
+  if (const auto version = table.Integer("version", 5, 7)) rule.version = static_cast<uint8_t>(*version);
+  rule.stationary = table.Boolean("stationary");
+  const auto seconds = table.Number("seconds", 1, 86'400);
+  if (!seconds && !table.Has("seconds")) table.Complain("seconds", "is missing: how long such an object may be silent");
+  Assign(seconds, rule.timeout_s);
+  table.CheckKeys();
+  return rule;
+}
+
+void ReadAdmission(SettingsTable& table, dis::AdmissionOptions& admission) {
+  const auto ranges = [&](std::string_view key, std::vector<dis::AddressRange>& to) {
+    const auto texts = table.Strings(key);
+    if (!texts) return;
+    auto parsed = dis::ParseAddressRanges(*texts);
+    if (parsed.ok()) to = std::move(*parsed);
+    if (!parsed.ok()) table.Complain(key, parsed.message());
+  };
+  ranges("sources", admission.sources);
+  ranges("managers", admission.managers);
+  Assign(table.Boolean("refuse_strangers"), admission.refuse_strangers);
+  Assign(table.Boolean("refuse_absurd"), admission.refuse_absurd);
+  Assign(table.Number("pdus_per_s", 0, 1e9), admission.pdus_per_s);
+  Assign(table.Number("new_entities_per_s", 0, 1e9), admission.new_entities_per_s);
+}
+
 FeedSpec ReadFeed(SettingsTable& table) {
   FeedSpec feed;
   Assign(table.Strings("listen"), feed.listen);
   if (const auto exercise = table.Integer("exercise", 0, 255)) feed.exercise = static_cast<uint8_t>(*exercise);
   Assign(table.String("interface"), feed.interface_address);
   Assign(table.Number("timeout_s", 1, 3600), feed.timeout_s);
+  std::vector<SettingsTable> timeouts = table.Tables("timeout");
+  if (timeouts.size() + feed.timeouts.size() > kMostTimeoutRules) {
+    table.Complain("timeout", fmt::format("is given {} times, but there may be {}", timeouts.size(),
+                                          kMostTimeoutRules - feed.timeouts.size()));
+    timeouts.clear();
+  }
+  std::vector<TimeoutRule> rules;
+  for (SettingsTable& timeout : timeouts) rules.push_back(ReadTimeout(timeout));
+  feed.timeouts.insert(feed.timeouts.begin(), rules.begin(), rules.end());
+  Assign(table.Integer("most_entities", 1, 10'000'000), feed.most_entities);
+  ReadAdmission(table, feed.admission);
   table.CheckKeys();
   return feed;
 }

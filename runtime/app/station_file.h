@@ -4,12 +4,14 @@
 // Threads: values.
 #pragma once
 
+#include "dis/admission.h"
 #include "render/render_options.h"
 #include "runtime/app/overview.h"
 #include "runtime/app/target.h"
 #include "runtime/app/tether.h"
 #include "runtime/base/status.h"
 #include "runtime/earth/units.h"
+#include "runtime/scene/object_table.h"
 
 #include <cstdint>
 #include <optional>
@@ -49,6 +51,9 @@ struct FeedSpec {
   std::optional<uint8_t> exercise;
   std::string interface_address;  // that joins the groups; empty: the system's choice
   double timeout_s = 12;
+  std::vector<TimeoutRule> timeouts = DefaultTimeouts();
+  size_t most_entities = 100'000;
+  dis::AdmissionOptions admission;
 };
 
 struct StationSpec {

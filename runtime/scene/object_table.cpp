@@ -3,10 +3,7 @@
 #include "runtime/base/status.h"
 #include "runtime/earth/ellipsoid.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace belvedere {
@@ -16,6 +13,15 @@ constexpr double kDeepest_m = 100e3;               // under the ellipsoid
 constexpr double kNotGiven_m = 1.0;                // this close to the Earth's centre no position was given
 constexpr double kOutOfOrder_s = 2.0;              // a state older by more is a sender that set its clock
 constexpr double kBuildShare_sPerObject = 2.5e-6;  // ten times what copying one record takes
+
+bool StandsStill(const KinematicState& state) {
+  if (state.model == DeadReckoning::kStatic) return true;
+  const auto slow = [](const glm::dvec3& v) { return std::hypot(v.x, v.y, v.z) <= kStationary_mps; };
+  return slow(state.velocity_mps) && (!ModelRotates(state.model) || slow(state.angular_velocity_radps)) &&
+         (!ModelAccelerates(state.model) || slow(state.acceleration_mps2));
+}
+
+}  // namespace
 
 uint8_t PositionFlags(const glm::dvec3& ecef) {
   const double radius_m = std::hypot(ecef.x, ecef.y, ecef.z);
@@ -28,45 +34,8 @@ uint8_t PositionFlags(const glm::dvec3& ecef) {
   return radius_m < surface_m - kDeepest_m ? uint8_t{kObjectUnderground} : uint8_t{0};
 }
 
-}  // namespace
-
-std::string EntityId::ToString() const {
-  return fmt::format("{}:{}:{}", site, application, entity);
-}
-
-std::optional<EntityId> EntityId::Parse(std::string_view text) {
-  std::array<uint16_t, 3> numbers{};
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  for (size_t i = 0; i < numbers.size(); ++i) {
-    if (i > 0 && (at == end || *at++ != ':')) return std::nullopt;
-    const auto [after, error] = std::from_chars(at, end, numbers[i]);
-    if (error != std::errc() || after == at) return std::nullopt;
-    at = after;
-  }
-  if (at != end) return std::nullopt;
-  return EntityId{numbers[0], numbers[1], numbers[2]};
-}
-
-std::string EntityType::ToString() const {
-  return fmt::format("{}.{}.{}.{}.{}.{}.{}", kind, domain, country, category, subcategory, specific, extra);
-}
-
-Marking Marking::Sanitise(std::span<const uint8_t> bytes) {
-  Marking marking;
-  for (const uint8_t byte : bytes.first(std::min(bytes.size(), kMaxLength))) {
-    if (byte == 0) break;
-    marking.text_[marking.length_++] = byte >= 0x20 && byte < 0x7F ? static_cast<char>(byte) : '?';
-  }
-  while (marking.length_ > 0 && marking.text_[marking.length_ - size_t{1}] == ' ') --marking.length_;
-  return marking;
-}
-
-Marking Marking::Sanitise(std::string_view text) {
-  std::array<uint8_t, kMaxLength> bytes{};
-  const size_t length = std::min(text.size(), kMaxLength);
-  std::copy_n(text.begin(), length, bytes.begin());
-  return Sanitise(std::span<const uint8_t>(bytes.data(), length));
+std::vector<TimeoutRule> DefaultTimeouts() {
+  return {{.types = {}, .version = uint8_t{7}, .stationary = true, .timeout_s = kStationaryTimeout_s}};
 }
 
 const ObjectRecord* ObjectSnapshot::Find(EntityId id) const {
@@ -78,6 +47,9 @@ const ObjectRecord* ObjectSnapshot::Find(EntityId id) const {
 ObjectTable::ObjectTable(const Options& options)
     : options_(options), next_publish_s_(-HUGE_VAL), published_(std::make_shared<ObjectSnapshot>()) {
   BELVEDERE_CHECK(options_.capacity > 0 && options_.capacity < kNoSlot);
+  BELVEDERE_CHECK(options_.timeouts.size() <= kMostTimeoutRules);
+  for (const TimeoutRule& rule : options_.timeouts) lines_.push_back({.timeout_s = rule.timeout_s});
+  lines_.push_back({.timeout_s = options_.timeout_s});
 }
 
 void ObjectTable::Put(const ObjectRecord& record) {
@@ -121,6 +93,46 @@ bool ObjectTable::Remove(EntityId id) {
   return true;
 }
 
+bool ObjectTable::Hold(EntityId id, double now_s) {
+  MutexLock lock(mutex_);
+  const auto known = slots_.find(id);
+  if (known == slots_.end()) return false;
+  Entry& entry = entries_[known->second];
+  if (entry.held) return true;
+  KinematicState& motion = entry.record.kinematics;
+  if ((entry.record.flags & kObjectFrozen) == 0) motion = Extrapolate(motion, now_s - motion.time_s);
+  motion.time_s = now_s;
+  entry.held = true;
+  entry.record.flags |= kObjectFrozen;
+  ++entry.record.report;
+  ++counters_.held;
+  changed_ = true;
+  return true;
+}
+
+bool ObjectTable::Release(EntityId id, double now_s) {
+  MutexLock lock(mutex_);
+  const auto known = slots_.find(id);
+  if (known == slots_.end()) return false;
+  Entry& entry = entries_[known->second];
+  if (!entry.held) return true;
+  entry.held = false;
+  if ((entry.record.appearance & kAppearanceFrozen) == 0) {
+    entry.record.flags = static_cast<uint8_t>(entry.record.flags & ~kObjectFrozen);
+  }
+  entry.record.kinematics.time_s = now_s;
+  ++entry.record.report;
+  changed_ = true;
+  return true;
+}
+
+std::optional<ObjectRecord> ObjectTable::Find(EntityId id) const {
+  MutexLock lock(mutex_);
+  const auto known = slots_.find(id);
+  if (known == slots_.end()) return std::nullopt;
+  return entries_[known->second].record;
+}
+
 std::vector<EntityId> ObjectTable::Ids() const {
   MutexLock lock(mutex_);
   std::vector<EntityId> ids;
@@ -133,9 +145,11 @@ void ObjectTable::Tick(double now_s) {
   std::shared_ptr<const ObjectSnapshot> next;
   {
     MutexLock lock(mutex_);
-    while (stalest_ != kNoSlot && entries_[stalest_].record.received_s + options_.timeout_s <= now_s) {
-      ++counters_.timed_out;
-      Drop(stalest_);
+    for (const Line& line : lines_) {
+      while (line.stalest != kNoSlot && entries_[line.stalest].record.received_s + line.timeout_s <= now_s) {
+        ++counters_.timed_out;
+        Drop(line.stalest);
+      }
     }
     if (!changed_ || now_s < next_publish_s_) return;
     next = Build(now_s);
@@ -148,7 +162,11 @@ void ObjectTable::Tick(double now_s) {
 std::optional<double> ObjectTable::NextTick() const {
   MutexLock lock(mutex_);
   std::optional<double> next;
-  if (stalest_ != kNoSlot) next = entries_[stalest_].record.received_s + options_.timeout_s;
+  for (const Line& line : lines_) {
+    if (line.stalest == kNoSlot) continue;
+    const double due_s = entries_[line.stalest].record.received_s + line.timeout_s;
+    next = std::min(next.value_or(due_s), due_s);
+  }
   if (changed_) next = std::min(next.value_or(next_publish_s_), next_publish_s_);
   return next;
 }
@@ -168,7 +186,7 @@ ObjectTableCounters ObjectTable::Counters() const {
 ObjectTable::Slot ObjectTable::AddSlot(EntityId id) {
   if (slots_.size() >= options_.capacity) {
     ++counters_.crowded_out;
-    Drop(stalest_);
+    Drop(Stalest());
   }
   Slot slot;
   if (free_.empty()) {
@@ -181,6 +199,7 @@ ObjectTable::Slot ObjectTable::AddSlot(EntityId id) {
   }
   entries_[slot].record.id = id;
   entries_[slot].record.kinematics.time_s = -HUGE_VAL;
+  entries_[slot].line = lines_.size() - 1;
   LinkFreshest(slot);
   slots_.emplace(id, slot);
   ++counters_.added;
@@ -197,19 +216,44 @@ void ObjectTable::Drop(Slot slot) {
 
 void ObjectTable::Unlink(Slot slot) {
   const Entry& entry = entries_[slot];
-  (entry.staler == kNoSlot ? stalest_ : entries_[entry.staler].fresher) = entry.fresher;
-  (entry.fresher == kNoSlot ? freshest_ : entries_[entry.fresher].staler) = entry.staler;
+  Line& line = lines_[entry.line];
+  (entry.staler == kNoSlot ? line.stalest : entries_[entry.staler].fresher) = entry.fresher;
+  (entry.fresher == kNoSlot ? line.freshest : entries_[entry.fresher].staler) = entry.staler;
 }
 
 void ObjectTable::LinkFreshest(Slot slot) {
-  entries_[slot].staler = freshest_;
+  Line& line = lines_[entries_[slot].line];
+  entries_[slot].staler = line.freshest;
   entries_[slot].fresher = kNoSlot;
-  (freshest_ == kNoSlot ? stalest_ : entries_[freshest_].fresher) = slot;
-  freshest_ = slot;
+  (line.freshest == kNoSlot ? line.stalest : entries_[line.freshest].fresher) = slot;
+  line.freshest = slot;
+}
+
+size_t ObjectTable::LineOf(const ObjectRecord& record) const {
+  const bool stationary = StandsStill(record.kinematics);
+  for (size_t i = 0; i < options_.timeouts.size(); ++i) {
+    const TimeoutRule& rule = options_.timeouts[i];
+    if (rule.version && *rule.version != record.protocol_version) continue;
+    if (rule.stationary && *rule.stationary != stationary) continue;
+    if (rule.types.Fits(record.type)) return i;
+  }
+  return options_.timeouts.size();
+}
+
+ObjectTable::Slot ObjectTable::Stalest() const {
+  Slot stalest = kNoSlot;
+  for (const Line& line : lines_) {
+    if (line.stalest == kNoSlot) continue;
+    const bool staler =
+        stalest == kNoSlot || entries_[line.stalest].record.received_s < entries_[stalest].record.received_s;
+    if (staler) stalest = line.stalest;
+  }
+  return stalest;
 }
 
 void ObjectTable::Accept(Slot slot, const ObjectRecord& record) {
   Unlink(slot);
+  entries_[slot].line = LineOf(record);
   LinkFreshest(slot);
   changed_ = true;
   ObjectRecord& mine = entries_[slot].record;
@@ -219,6 +263,7 @@ void ObjectTable::Accept(Slot slot, const ObjectRecord& record) {
     mine.received_s = record.received_s;
     return;
   }
+  entries_[slot].held = false;
   const uint32_t report = mine.report + 1;
   mine = record;
   mine.report = report;

@@ -1,7 +1,8 @@
 // ObjectTable: every moving object that is known now, shared by whoever hears of objects and whoever shows them.
 //
-// Writers put whole records; the table clamps and flags what is nonsense, drops objects not heard of for timeout_s, and
-// at capacity drops the one not heard of for longest. Readers take an ObjectSnapshot: immutable, all records at one
+// Writers put whole records; the table clamps and flags what is nonsense, drops objects that have not been heard of for
+// as long as the first fitting rule of `timeouts` says (timeout_s where none fits), and at capacity drops the one not
+// heard of for longest. Readers take an ObjectSnapshot: immutable, all records at one
 // time, in the order of their ids. It is rebuilt by writers, at most every publish_interval_s, and less often when
 // building one takes long (never more than a twentieth of the time).
 //
@@ -11,60 +12,19 @@
 #pragma once
 
 #include "runtime/base/mutex.h"
+#include "runtime/scene/entity.h"
 #include "runtime/scene/motion.h"
 
 #include <array>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
-#include <string_view>
 #include <vector>
 
 namespace belvedere {
-
-struct EntityId {
-  uint16_t site = 0, application = 0, entity = 0;
-  auto operator<=>(const EntityId&) const = default;
-  std::string ToString() const;  // "site:application:entity"
-  static std::optional<EntityId> Parse(std::string_view text);
-};
-
-// The seven numbers of SISO-REF-010; zero means unspecified.
-struct EntityType {
-  uint8_t kind = 0, domain = 0;
-  uint16_t country = 0;
-  uint8_t category = 0, subcategory = 0, specific = 0, extra = 0;
-  auto operator<=>(const EntityType&) const = default;
-  std::string ToString() const;  // "1.2.225.57.1.1.0"
-
-  static constexpr uint8_t kPlatform = 1, kMunition = 2;                   // kind
-  static constexpr uint8_t kLand = 1, kAir = 2, kSurface = 3, kSpace = 5;  // domain of a platform
-  bool is_ground_platform() const { return kind == kPlatform && domain == kLand; }
-  bool is_air_platform() const { return kind == kPlatform && domain == kAir; }
-};
-
-// Up to 11 characters, all printable ASCII.
-class Marking {
- public:
-  static constexpr size_t kMaxLength = 11;
-  Marking() = default;
-  // Up to the first NUL; bytes that are not printable ASCII become '?', spaces at the end go.
-  static Marking Sanitise(std::span<const uint8_t> bytes);
-  static Marking Sanitise(std::string_view text);
-  std::string_view view() const { return {text_.data(), length_}; }
-  bool empty() const { return length_ == 0; }
-  bool operator==(const Marking& other) const { return view() == other.view(); }
-
- private:
-  std::array<char, kMaxLength> text_{};
-  uint8_t length_ = 0;
-};
 
 struct ArticulatedPart {
   uint16_t attached_to = 0;  // 0: the entity itself
@@ -81,10 +41,12 @@ enum ObjectFlags : uint8_t {
   kObjectTooFar = 4,         // more than kFarthestObject_m from the Earth's centre
   kObjectMotionClamped = 8,  // faster than kMaxSpeed_mps and so on
   kObjectUnknownModel = 16,  // dead-reckoning model not in the standard: stands still
-  kObjectFrozen = 32,        // the sender asks that it not be dead-reckoned
+  kObjectFrozen = 32,        // the sender asks that it not be dead-reckoned, or Hold did
 };
 inline constexpr uint8_t kObjectNotVisible = kObjectAtEarthCentre | kObjectUnderground | kObjectTooFar;
 inline constexpr double kFarthestObject_m = 1e9;
+// Which of kObjectNotVisible a place has: 0 for one that can be shown.
+uint8_t PositionFlags(const glm::dvec3& ecef);
 
 struct ObjectRecord {
   static constexpr size_t kMaxParts = 8;  // further ones are left out
@@ -99,7 +61,9 @@ struct ObjectRecord {
   KinematicState kinematics;
   std::array<ArticulatedPart, kMaxParts> part_array{};
   double received_s = 0;
-  uint32_t report = 0;  // counts the reports of this object; changes with each
+  uint8_t protocol_version = 7;  // of the report, for TimeoutRule
+  uint64_t source = 0;           // who reported it: a number of the network's making, equal for one host
+  uint32_t report = 0;           // counts the reports of this object; changes with each
 
   bool visible() const { return (flags & kObjectNotVisible) == 0; }
   std::span<const ArticulatedPart> parts() const { return {part_array.data(), part_count}; }
@@ -127,17 +91,31 @@ struct ObjectChange {
   double time_s = 0;
 };
 
+// How long an object may be silent.
+struct TimeoutRule {
+  EntityPattern types;             // of these,
+  std::optional<uint8_t> version;  // reported in this version of the protocol,
+  std::optional<bool> stationary;  // standing still or moving
+  double timeout_s = 12.0;
+};
+inline constexpr size_t kMostTimeoutRules = 16;
+inline constexpr double kStationary_mps = 0.05;  // what moves no faster, and does not turn, stands still
+// IEEE 1278.1-2012: what stands still is reported once a minute, and times out after 2.4 times as long.
+inline constexpr double kStationaryTimeout_s = 144.0;
+std::vector<TimeoutRule> DefaultTimeouts();
+
 struct ObjectTableOptions {
   size_t capacity = 100'000;
   double timeout_s = 12.0;
+  std::vector<TimeoutRule> timeouts = DefaultTimeouts();  // at most kMostTimeoutRules; the first that fits holds
   double publish_interval_s = 0.05;
 };
 
 struct ObjectTableCounters {
   size_t alive = 0, most_alive = 0;
   uint64_t added = 0, removed = 0, timed_out = 0, crowded_out = 0, out_of_order = 0, clamped = 0, not_visible = 0;
+  uint64_t held = 0;
 };
-
 class ObjectTable {
  public:
   using Options = ObjectTableOptions;
@@ -152,6 +130,10 @@ class ObjectTable {
   // False when the object is not known (its type and model are not, so there is nothing to show).
   bool Change(EntityId id, const ObjectChange& change, double received_s) EXCLUDES_LOCK(mutex_);
   bool Remove(EntityId id) EXCLUDES_LOCK(mutex_);
+  // Stops the object where it is shown at now_s, until Release or the next report of it.
+  bool Hold(EntityId id, double now_s) EXCLUDES_LOCK(mutex_);
+  bool Release(EntityId id, double now_s) EXCLUDES_LOCK(mutex_);
+  std::optional<ObjectRecord> Find(EntityId id) const EXCLUDES_LOCK(mutex_);
   // Of every object known now, in order.
   std::vector<EntityId> Ids() const EXCLUDES_LOCK(mutex_);
   // Drops what has timed out and publishes what has changed, if it is time for either. Writers call it after a batch.
@@ -168,13 +150,22 @@ class ObjectTable {
   static constexpr Slot kNoSlot = ~Slot{0};
   struct Entry {
     ObjectRecord record;
-    Slot staler = kNoSlot, fresher = kNoSlot;  // neighbours in the order of received_s
+    Slot staler = kNoSlot, fresher = kNoSlot;  // neighbours in its line, in the order of received_s
+    size_t line = 0;
+    bool held = false;
+  };
+  // Objects that may be silent for equally long: of timeouts[i], the last is for those that no rule fits.
+  struct Line {
+    double timeout_s = 0;
+    Slot stalest = kNoSlot, freshest = kNoSlot;
   };
 
   Slot AddSlot(EntityId id) REQUIRES_LOCK(mutex_);
   void Drop(Slot slot) REQUIRES_LOCK(mutex_);
   void Unlink(Slot slot) REQUIRES_LOCK(mutex_);
   void LinkFreshest(Slot slot) REQUIRES_LOCK(mutex_);
+  size_t LineOf(const ObjectRecord& record) const;
+  Slot Stalest() const REQUIRES_LOCK(mutex_);
   void Accept(Slot slot, const ObjectRecord& record) REQUIRES_LOCK(mutex_);
   std::shared_ptr<const ObjectSnapshot> Build(double now_s) REQUIRES_LOCK(mutex_);
 
@@ -183,8 +174,7 @@ class ObjectTable {
   std::vector<Entry> entries_ GUARDED_BY(mutex_);
   std::vector<Slot> free_ GUARDED_BY(mutex_);
   std::map<EntityId, Slot> slots_ GUARDED_BY(mutex_);
-  Slot stalest_ GUARDED_BY(mutex_) = kNoSlot;
-  Slot freshest_ GUARDED_BY(mutex_) = kNoSlot;
+  std::vector<Line> lines_ GUARDED_BY(mutex_);
   bool changed_ GUARDED_BY(mutex_) = false;
   double next_publish_s_ GUARDED_BY(mutex_);
   uint64_t snapshots_ GUARDED_BY(mutex_) = 0;
@@ -195,12 +185,3 @@ class ObjectTable {
 };
 
 }  // namespace belvedere
-
-template <>
-struct std::hash<belvedere::EntityId> {
-  size_t operator()(belvedere::EntityId id) const noexcept {
-    const uint64_t word = uint64_t{id.site} << 32 | uint64_t{id.application} << 16 | id.entity;
-    const uint64_t mixed = word * 0x9E3779B97F4A7C15u;
-    return static_cast<size_t>(mixed ^ (mixed >> 32));
-  }
-};

@@ -30,6 +30,18 @@ time_rate = 3600
 [feed]
 listen = ["127.0.0.1:3000", "239.1.2.3:3001"]
 exercise = 7
+most_entities = 500
+sources = ["10.0.0.0/8"]
+managers = ["10.0.0.9"]
+refuse_strangers = true
+refuse_absurd = true
+pdus_per_s = 5000
+new_entities_per_s = 100
+  [[feed.timeout]]
+  entity_type = "1.2"
+  version = 6
+  stationary = false
+  seconds = 30
 [render]
 max_fps = 30
 overlay_slots = 800
@@ -69,6 +81,16 @@ position = [10, -20]
   EXPECT_EQ(station->time_rate, 3600.0);
   EXPECT_EQ(station->feed.listen.size(), 2U);
   EXPECT_EQ(station->feed.exercise, 7);
+  EXPECT_EQ(station->feed.most_entities, 500U);
+  EXPECT_EQ(station->feed.admission.sources.size(), 1U);
+  EXPECT_EQ(station->feed.admission.managers.size(), 1U);
+  EXPECT_TRUE(station->feed.admission.refuse_strangers && station->feed.admission.refuse_absurd);
+  EXPECT_EQ(station->feed.admission.pdus_per_s, 5000);
+  EXPECT_EQ(station->feed.admission.new_entities_per_s, 100);
+  ASSERT_EQ(station->feed.timeouts.size(), 2U);  // the file's before the standard's
+  EXPECT_EQ(station->feed.timeouts[0].version, 6);
+  EXPECT_EQ(station->feed.timeouts[0].stationary, false);
+  EXPECT_EQ(station->feed.timeouts[0].timeout_s, 30);
   EXPECT_EQ(station->render.max_fps, 30);
   EXPECT_EQ(station->render.overlay_slots, 800);
   ASSERT_EQ(station->keys.size(), 1U);
@@ -111,6 +133,10 @@ TEST(StationFileTest, NamesWrongTypesAndRanges) {
                 .find("s.toml:4: window.view.kind is \"map\""),
             std::string::npos);
   EXPECT_NE(Complaint("dataset = \"d\"\ntime = \"noon\"\n" + kWindow).find("s.toml:2: time is \"noon\""),
+            std::string::npos);
+  EXPECT_NE(Complaint("dataset = \"d\"\n" + kWindow + "[feed]\nsources = [\"10.0.0.0/40\"]\n").find("10.0.0.0/40"),
+            std::string::npos);
+  EXPECT_NE(Complaint("dataset = \"d\"\n" + kWindow + "[[feed.timeout]]\nversion = 7\n").find("seconds is missing"),
             std::string::npos);
   EXPECT_NE(Complaint("dataset = \"d\"\nwindow = 3\n").find("must be written as [[window]] tables"), std::string::npos);
   EXPECT_NE(Complaint("dataset = \"d\"\n[keys]\nF1 = \"togle hud\"\n" + kWindow).find("did you mean toggle?"),

@@ -16,7 +16,7 @@ namespace {
 
 class IntakeTest : public testing::Test {
  protected:
-  void Take(std::span<const uint8_t> datagram) { intake_.Take(datagram, 10.0, 1000.0); }
+  void Take(std::span<const uint8_t> datagram) { intake_.Take(datagram, {10.0, 1000.0, {}}); }
   std::shared_ptr<const ObjectSnapshot> Snapshot() {
     table_.Tick(10.0 + 0.1 * ++ticks_);
     return table_.Snapshot();
@@ -24,7 +24,7 @@ class IntakeTest : public testing::Test {
   const IntakeCounters& counters() const { return intake_.counters(); }
 
   ObjectTable table_;
-  Intake intake_{table_, uint8_t{1}};
+  Intake intake_{table_, {.exercise = uint8_t{1}}};
   int ticks_ = 0;
 };
 
@@ -77,6 +77,93 @@ TEST_F(IntakeTest, RemoveEntityTakesOutOneOrAll) {
   EXPECT_TRUE(Snapshot()->objects.empty());
 }
 
+UdpAddress Host(uint8_t last) {
+  return {.bytes = {10, 0, 0, last}, .port = 3000};
+}
+
+TEST_F(IntakeTest, StopHoldsAnEntityUntilItIsStartedOrReportedAgain) {
+  EntityState state = SomeEntity();
+  state.model = 2;
+  Take(Encoded(state));
+  std::vector<uint8_t> bytes(64);
+  const size_t stop = EncodePdu({}, StopFreeze{{}, {0xFFFF, 0xFFFF, 0xFFFF}, {}, 0, 0, 1}, bytes);
+  intake_.Take(std::span(bytes).first(stop), {14.0, 1004.0, {}});
+  table_.Tick(14.1);
+  const ObjectRecord held = table_.Snapshot()->objects.at(0);
+  const glm::dvec3 expected = state.position_ecef + 4.0 * glm::dvec3(state.velocity_mps);
+  EXPECT_LT(glm::distance(PoseAt(held.kinematics, 20.0).position_ecef, expected), 1e-6);
+  EXPECT_NE(held.flags & kObjectFrozen, 0);
+  const size_t start = EncodePdu({}, StartResume{{}, state.id, {}, {}, 2}, bytes);
+  intake_.Take(std::span(bytes).first(start), {20.0, 1010.0, {}});
+  table_.Tick(20.1);
+  const ObjectRecord going = table_.Snapshot()->objects.at(0);
+  EXPECT_EQ(going.flags & kObjectFrozen, 0);
+  EXPECT_LT(glm::distance(PoseAt(going.kinematics, 20.0).position_ecef, expected), 1e-6);
+  EXPECT_NE(going.report, held.report);
+}
+
+TEST(IntakeAdmission, CommandsOfStrangersAndPlacesThatCannotBeShownAreRefused) {
+  ObjectTable table;
+  AdmissionOptions admission;
+  admission.refuse_strangers = admission.refuse_absurd = true;
+  admission.managers = *ParseAddressRanges(std::vector<std::string>{"10.0.0.9"});
+  Intake intake(table, {.exercise = {}, .admission = admission});
+  intake.Take(Encoded(SomeEntity(1)), {1.0, 0.0, Host(1)});
+  intake.Take(Encoded(SomeEntity(2)), {1.0, 0.0, Host(2)});
+  std::vector<uint8_t> remove(28);
+  EncodePdu({}, RemoveEntity{{}, {0xFFFF, 0xFFFF, 0xFFFF}, 0}, remove);
+  intake.Take(remove, {1.1, 0.1, Host(1)});  // its own goes, the other's stays
+  EXPECT_EQ(table.Ids(), std::vector<EntityId>{SomeEntity(2).id});
+  EXPECT_EQ(intake.counters().refused[static_cast<size_t>(Refusal::kStranger)], 1u);
+  intake.Take(remove, {1.2, 0.2, Host(9)});
+  EXPECT_TRUE(table.Ids().empty());
+  EntityState nowhere = SomeEntity(3);
+  nowhere.position_ecef = {};
+  intake.Take(Encoded(nowhere), {1.3, 0.3, Host(1)});
+  EXPECT_TRUE(table.Ids().empty());
+  const IntakeCounters& c = intake.counters();
+  EXPECT_EQ(c.refused[static_cast<size_t>(Refusal::kAbsurd)], 1u);
+  EXPECT_EQ(c.received, c.accepted + c.refused_total());
+}
+
+TEST(IntakeAdmission, SourcesAndRatesAreLimited) {
+  ObjectTable table;
+  AdmissionOptions admission;
+  admission.sources = *ParseAddressRanges(std::vector<std::string>{"10.0.0.0/30"});
+  admission.pdus_per_s = 10;
+  admission.new_entities_per_s = 2;
+  Intake intake(table, {.exercise = {}, .admission = admission});
+  intake.Take(Encoded(SomeEntity(1)), {1.0, 0.0, Host(4)});
+  EXPECT_EQ(intake.counters().refused[static_cast<size_t>(Refusal::kSource)], 1u);
+  EXPECT_EQ(intake.counters().received, 0u);
+  for (uint16_t entity = 1; entity <= 5; ++entity) intake.Take(Encoded(SomeEntity(entity)), {1.0, 0.0, Host(1)});
+  EXPECT_EQ(table.Ids().size(), 2u);
+  EXPECT_EQ(intake.counters().refused[static_cast<size_t>(Refusal::kNewEntity)], 3u);
+  for (int i = 0; i < 10; ++i) intake.Take(Encoded(SomeEntity(1)), {1.0, 0.0, Host(1)});
+  EXPECT_EQ(intake.counters().refused[static_cast<size_t>(Refusal::kRate)], 5u);  // of 15
+  intake.Take(Encoded(SomeEntity(3)), {1.0, 0.0, Host(2)});                       // another host has its own rate
+  EXPECT_EQ(table.Ids().size(), 3u);
+  intake.Take(Encoded(SomeEntity(4)), {1.6, 0.0, Host(1)});
+  EXPECT_EQ(table.Ids().size(), 4u);
+}
+
+TEST(AddressRange, HoldsWhatItSays) {
+  EXPECT_TRUE(AddressRange::Parse("10.0.0.0/8")->Contains(Host(200)));
+  EXPECT_FALSE(AddressRange::Parse("10.0.0.0/25")->Contains(Host(200)));
+  EXPECT_TRUE(AddressRange::Parse("0.0.0.0/0")->Contains(Host(200)));
+  EXPECT_TRUE(AddressRange::Parse("10.0.0.200")->Contains(Host(200)));
+  UdpAddress mapped{.bytes = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF, 10, 0, 0, 200}, .v6 = true};
+  EXPECT_TRUE(AddressRange::Parse("10.0.0.200")->Contains(mapped));
+  EXPECT_EQ(mapped.host(), Host(200).host());
+  EXPECT_NE(Host(1).host(), Host(2).host());
+  UdpAddress local{.bytes = {0xFE, 0x80, 0, 1}, .v6 = true};
+  EXPECT_TRUE(AddressRange::Parse("fe80::/10")->Contains(local));
+  EXPECT_FALSE(AddressRange::Parse("fec0::/10")->Contains(local));
+  for (const char* bad : {"", "10.0.0", "10.0.0.0/33", "10.0.0.0/", "10.0.0.0/8x", "fe80::/129", "host"}) {
+    EXPECT_FALSE(AddressRange::Parse(bad).ok()) << bad;
+  }
+}
+
 TEST_F(IntakeTest, PartsAreBounded) {
   std::vector<uint8_t> bytes = Encoded(SomeEntity());
   bytes[19] = 20;
@@ -100,17 +187,6 @@ TEST(Timestamp, UnitsAndWrap) {
   EXPECT_EQ(MakeTimestamp(3600.0 - 1e-9, false), 0u);
 }
 
-TEST(Timestamp, AStateIsAsOfItsTimestampWhereThatCanBe) {
-  const double utc_s = 1.7e9 - std::fmod(1.7e9, 3600.0) + 0.1;  // just past an hour
-  EXPECT_NEAR(StateTime(MakeTimestamp(utc_s - 0.05, true), 50.0, utc_s), 49.95, 1e-5);
-  EXPECT_NEAR(StateTime(MakeTimestamp(utc_s - 0.30, true), 50.0, utc_s), 49.70, 1e-5);  // sent before the hour
-  EXPECT_NEAR(StateTime(MakeTimestamp(utc_s + 0.20, true), 50.0, utc_s), 50.20, 1e-5);
-  EXPECT_EQ(StateTime(MakeTimestamp(utc_s - 0.05, false), 50.0, utc_s), 50.0);
-  EXPECT_EQ(StateTime(MakeTimestamp(utc_s - 60.0, true), 50.0, utc_s), 50.0);
-  EXPECT_EQ(StateTime(MakeTimestamp(utc_s + 60.0, true), 50.0, utc_s), 50.0);
-  EXPECT_EQ(StateTime(0xFFFFFFFF, 50.0, 1800.0), 50.0);
-}
-
 // ---- single datagrams, each a real one with one edit, and the outcome that is expected of a receiver
 
 struct Outcome {
@@ -123,8 +199,8 @@ Outcome Receive(const std::filesystem::path& path) {
   const std::vector<char> chars((std::istreambuf_iterator<char>(file)), {});
   const std::vector<uint8_t> bytes(chars.begin(), chars.end());
   ObjectTable table;
-  Intake intake(table, uint8_t{1});
-  intake.Take(bytes, 10.0, 1000.0);
+  Intake intake(table, {.exercise = uint8_t{1}});
+  intake.Take(bytes, {10.0, 1000.0, {}});
   table.Tick(10.0);
   return {intake.counters(), table.Snapshot()};
 }

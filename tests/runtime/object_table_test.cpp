@@ -118,6 +118,52 @@ TEST(ObjectTable, SilentObjectsTimeOut) {
   EXPECT_FALSE(table.NextTick());
 }
 
+TEST(ObjectTable, ARuleMaySayHowLongAnObjectMayBeSilent) {
+  ObjectTableOptions options;
+  options.timeouts = {{.types = *EntityPattern::Parse("1.2"), .version = {}, .stationary = {}, .timeout_s = 5},
+                      {.types = {}, .version = uint8_t{7}, .stationary = true, .timeout_s = 144}};
+  ObjectTable table(options);
+  const auto put = [&](uint16_t entity, uint8_t domain, uint8_t version, double speed_mps) {
+    ObjectRecord record;
+    record.id = {1, 1, entity};
+    record.type = {1, domain, 0, 0, 0, 0, 0};
+    record.protocol_version = version;
+    record.kinematics.position_ecef = {6.4e6, 0, 0};
+    record.kinematics.velocity_mps = {speed_mps, 0, 0};
+    record.kinematics.model = DeadReckoning::kFpw;
+    table.Put(record);
+  };
+  put(1, 2, 7, 0);  // air
+  put(2, 1, 7, 0);  // standing, version 7
+  put(3, 1, 6, 0);  // standing, version 6
+  put(4, 1, 7, 9);  // moving
+  table.Tick(5.0);
+  EXPECT_EQ(table.Ids().size(), 3u);
+  EXPECT_EQ(table.NextTick(), 12.0);
+  table.Tick(12.0);
+  EXPECT_EQ(table.Ids(), (std::vector<EntityId>{{1, 1, 2}}));
+  table.Tick(143.9);
+  EXPECT_EQ(table.NextTick(), 144.0);
+  table.Tick(144.0);
+  EXPECT_TRUE(table.Ids().empty());
+}
+
+TEST(ObjectTable, AtCapacityTheStalestGoesWhateverItsRule) {
+  ObjectTableOptions options;
+  options.capacity = 2;
+  ObjectTable table(options);
+  for (uint16_t entity = 1; entity <= 3; ++entity) {
+    ObjectRecord record;
+    record.id = {1, 1, entity};
+    record.kinematics.position_ecef = {6.4e6, 0, 0};
+    record.kinematics.velocity_mps = {entity == 1 ? 0.0 : 10.0, 0, 0};  // the first may be silent for longer
+    record.kinematics.model = DeadReckoning::kFpw;
+    record.received_s = entity;
+    table.Put(record);
+  }
+  EXPECT_EQ(table.Ids(), (std::vector<EntityId>{{1, 1, 2}, {1, 1, 3}}));
+}
+
 TEST(ObjectTable, RemovedAndDeactivatedObjectsGo) {
   ObjectTable table;
   table.Put(Record(1, 0.0));

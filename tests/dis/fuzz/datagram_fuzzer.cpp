@@ -12,8 +12,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   using namespace belvedere;
   const std::span<const uint8_t> datagram(bytes, size);
   ObjectTable table({.capacity = 4});
-  dis::Intake intake(table, std::nullopt);
-  intake.Take(datagram, 1.0, 1e9);
+  dis::Intake intake(table);
+  intake.Take(datagram, {1.0, 1e9, {}});
   table.Tick(1.0);
   for (const ObjectRecord& record : table.Snapshot()->objects) {
     const Pose pose = PoseAt(record.kinematics, 60.0);
