@@ -1,17 +1,21 @@
-// decode and extrapolate: from files to standard output.
+// decode, residuals and extrapolate: from files to standard output.
 #include "dis/codec.h"
 #include "dis/commands.h"
 #include "dis/motion_rows.h"
 #include "dis/pcap.h"
 #include "dis/pdu_json.h"
+#include "dis/residuals.h"
 #include "runtime/base/log.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <functional>
+#include <utility>
 
 namespace belvedere::dis {
 namespace {
@@ -21,11 +25,10 @@ Status FlushOutput() {
   return Status::Error("standard output: cannot write: {}", std::strerror(errno));
 }
 
-}  // namespace
-
-Status Decode(const DecodeCommand& command) {
+// Calls `take` with the frame's number and each PDU of the files, until it gives false.
+Status ForEachPdu(const std::vector<std::string>& files, const std::function<bool(uint64_t, const Pdu&)>& take) {
   uint64_t frames_before = 0;
-  for (const std::string& file : command.files) {
+  for (const std::string& file : files) {
     auto reader = PcapReader::Open(file);
     if (!reader.ok()) return reader.status();
     uint64_t last = frames_before;
@@ -33,8 +36,7 @@ Status Decode(const DecodeCommand& command) {
       last = frames_before + datagram->frame;
       DatagramReader pdus(datagram->bytes);
       for (Pdu pdu; pdus.Next(pdu);) {
-        fmt::print("{}\n", PduJson(last, pdu));
-        if (std::ferror(stdout)) return FlushOutput();
+        if (!take(last, pdu)) return FlushOutput();
       }
     }
     frames_before = last;
@@ -43,6 +45,31 @@ Status Decode(const DecodeCommand& command) {
     }
     if (!reader->status().ok()) return reader->status();
   }
+  return FlushOutput();
+}
+
+}  // namespace
+
+Status Decode(const DecodeCommand& command) {
+  return ForEachPdu(command.files, [](uint64_t frame, const Pdu& pdu) {
+    fmt::print("{}\n", PduJson(frame, pdu));
+    return std::ferror(stdout) == 0;
+  });
+}
+
+Status PrintResiduals(const ResidualsCommand& command) {
+  Residuals residuals;
+  Status status = ForEachPdu(command.files, [&](uint64_t, const Pdu& pdu) {
+    if (const auto* state = std::get_if<EntityState>(&pdu.body)) residuals.Add(*state, pdu.header.timestamp);
+    return true;
+  });
+  if (!status.ok()) return status;
+  nlohmann::ordered_json line = {{"entities", residuals.entities()}, {"reports", residuals.position_m().size()}};
+  for (const auto& [name, values] :
+       {std::pair("position_m", &residuals.position_m()), std::pair("turn_rad", &residuals.turn_rad())}) {
+    line[name] = {{"p50", ValueAt(*values, 0.5)}, {"p95", ValueAt(*values, 0.95)}, {"max", ValueAt(*values, 1.0)}};
+  }
+  fmt::print("{}\n", line.dump());
   return FlushOutput();
 }
 

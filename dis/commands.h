@@ -16,6 +16,11 @@ struct DecodeCommand {
 };
 Status Decode(const DecodeCommand& command);
 
+struct ResidualsCommand {
+  std::vector<std::string> files;
+};
+Status PrintResiduals(const ResidualsCommand& command);
+
 struct ExtrapolateCommand {
   std::string file;
 };

@@ -14,11 +14,16 @@ using namespace belvedere::dis;
 
 using Chosen = std::function<Status()>;
 
-void AddFileCommands(CLI::App& app, Chosen& chosen, DecodeCommand& decode, ExtrapolateCommand& extrapolate) {
+void AddFileCommands(CLI::App& app, Chosen& chosen, DecodeCommand& decode, ResidualsCommand& residuals,
+                     ExtrapolateCommand& extrapolate) {
   CLI::App* command =
       app.add_subcommand("decode", "print the PDUs of captures or raw datagrams, one JSON object a line");
   command->add_option("FILE", decode.files, "pcap files, or files of one datagram each")->required();
   command->callback([&] { chosen = [&] { return Decode(decode); }; });
+
+  command = app.add_subcommand("residuals", "how far reports lie from the ones before them, dead-reckoned");
+  command->add_option("FILE", residuals.files, "pcap files")->required();
+  command->callback([&] { chosen = [&] { return PrintResiduals(residuals); }; });
 
   command = app.add_subcommand("extrapolate", "dead-reckon the states in a CSV file");
   command->add_option("VECTORS", extrapolate.file, "columns id, drm, x0 .. z0, psi0_rad .., vx .., ax .., wx .., dt_s")
@@ -89,12 +94,13 @@ int Main(int argc, char** argv) {
   app.require_subcommand(1);
   Chosen chosen;
   DecodeCommand decode;
+  ResidualsCommand residuals;
   ExtrapolateCommand extrapolate;
   TrafficCommand traffic;
   ListenCommand listen;
   RecordCommand record;
   ReplayCommand replay;
-  AddFileCommands(app, chosen, decode, extrapolate);
+  AddFileCommands(app, chosen, decode, residuals, extrapolate);
   AddTraffic(app, chosen, traffic);
   AddListen(app, chosen, listen);
   AddRecordAndReplay(app, chosen, record, replay);

@@ -1,3 +1,4 @@
+#include "dis/intake.h"
 #include "dis/traffic_stream.h"
 
 #include "dis/traffic_sender.h"
@@ -148,6 +149,31 @@ TEST(Traffic, ASenderStartsAndStops) {
   (*sender)->Stop();
   EXPECT_TRUE((*sender)->status().ok());
   EXPECT_FALSE(TrafficSender::Start({.to = {"not numeric", 1}}, Clock::System()).ok());
+}
+
+TEST(TrafficStream, AfterAnOutageThePictureIsWholeWithinAHeartbeat) {
+  TrafficOptions options;
+  options.entities = 200;
+  auto stream = TrafficStream::Make(options);
+  ASSERT_TRUE(stream.ok());
+  ObjectTable table;
+  Intake intake(table);
+  const auto run = [&](double from_s, double to_s, bool connected) {
+    for (double now_s = from_s; now_s < to_s; now_s += 0.05) {
+      const std::span<const uint8_t> bytes = stream->Advance(now_s);
+      for (size_t at = 0; connected && at < bytes.size(); at += kEntityStateBytes) {
+        intake.Take(bytes.subspan(at, kEntityStateBytes), {now_s, 1e9 + now_s, {}});
+      }
+      table.Tick(now_s);
+    }
+  };
+  run(0, 20, true);
+  EXPECT_EQ(table.Ids().size(), 200u);
+  run(20, 30, false);
+  run(30, 30 + options.heartbeat_s + 0.1, true);
+  EXPECT_EQ(table.Ids().size(), 200u);
+  run(36, 36 + 150, false);  // for good: nothing stale is left
+  EXPECT_TRUE(table.Ids().empty());
 }
 
 }  // namespace
