@@ -1,17 +1,22 @@
 #include "managers/object_manager.h"
 
+#include "managers/label_layout.h"
 #include "managers/list_pages.h"
 #include "managers/object_selection.h"
 #include "managers/paced_thread.h"
+#include "managers/shown_objects.h"
 #include "runtime/base/status.h"
 #include "runtime/base/trace.h"
 #include "runtime/earth/ellipsoid.h"
 #include "runtime/paging/model_catalogue.h"
 #include "runtime/paging/terrain_height.h"
+#include "runtime/scene/label_format.h"
 
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <unordered_map>
 
 namespace belvedere {
@@ -19,13 +24,31 @@ namespace {
 
 constexpr double kListsPerSecond = 20.0;
 constexpr double kTypicalRadius_m = 10.0;  // of an object whose model is not in memory
-constexpr int kGroupLevel = 3;             // objects are grouped for culling by their quadnode of this level
+constexpr double kGroupSide_m = 500e3;     // objects are grouped for culling by cubes of this size
+constexpr double kCoarsestDetail_px = 64;
 constexpr double kGroupLookAhead_s = 0.5;  // a group's volume holds where its objects will be until the next list
 
+// An instance of the list, before it is known which come together.
 struct Candidate {
-  ObjectInstance instance;
-  Quadcode group;
+  uint64_t group = 0;
+  uint32_t instance = 0;  // index -> instances_
 };
+
+// The cube that a place lies in: 21 bits of each of its numbers.
+uint64_t GroupOf(const glm::dvec3& position_ecef) {
+  constexpr double kMost = 1 << 20;
+  uint64_t group = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cell = std::clamp(std::floor(position_ecef[axis] / kGroupSide_m) + kMost, 0.0, 2 * kMost - 1);
+    group = group << 21 | static_cast<uint64_t>(cell);
+  }
+  return group;
+}
+
+uint64_t PackedType(const EntityType& type) {
+  return uint64_t{type.kind} << 56 | uint64_t{type.domain} << 48 | uint64_t{type.country} << 32 |
+         uint64_t{type.category} << 24 | uint64_t{type.subcategory} << 16 | uint64_t{type.specific} << 8 | type.extra;
+}
 
 }  // namespace
 
@@ -73,33 +96,40 @@ class ObjectManager::Worker {
     const Geodetic eye = ToGeodetic(view.EyeAt(now_s));
     const ViewMatrices matrices = MatricesOf(view, now_s, std::max(0.0, eye.height_m));
     const std::shared_ptr<const ObjectSnapshot> snapshot = objects_.Snapshot();
-    std::vector<Candidate> candidates;
-    std::unordered_map<EntityId, Smoother> still_shown;
+    Clear();
     for (const ObjectRecord& record : snapshot->objects) {
-      if (record.visible()) Consider(record, view, matrices, now_s, pages, list, still_shown, candidates);
+      if (record.visible()) Consider(record, view, matrices, now_s, pages);
     }
-    smoothers_.swap(still_shown);
-    Emit(candidates, list);
+    KeepTriangleBudget();
+    if (view.labels) AddLabels(view, list);
+    Emit(list);
+    shown_.ForgetOthers(number_);
+  }
+
+  void Clear() {
+    instances_.clear();
+    candidates_.clear();
+    drawn_models_.clear();
+    wishes_.clear();
+    wishers_.clear();
+    models_found_.clear();
   }
 
   void Consider(const ObjectRecord& record, const ViewParameters& view, const ViewMatrices& matrices, double now_s,
-                ListPages& pages, DisplayList& list, std::unordered_map<EntityId, Smoother>& still_shown,
-                std::vector<Candidate>& candidates) {
-    const EntityLook look = looks_.LookOf(record.type);
-    const PageKey model_key = ModelKey(look.model);
-    const auto* model =
-        models_ != nullptr && look.model >= 0 ? static_cast<const ModelPage*>(pages.Find(model_key)) : nullptr;
+                ListPages& pages) {
+    if (!MayBeSeen(matrices, record.kinematics, kTypicalRadius_m, now_s)) return;
+    const EntityLook& look = LookOf(record.type);
+    const ModelPage* model = ModelOf(look.model, pages);
     const double radius_m = model != nullptr ? model->radius_m : kTypicalRadius_m;
-    const glm::dvec3 expected = PoseAt(record.kinematics, now_s).position_ecef;
-    const ObjectShow show = HowToShow(view, matrices, expected, radius_m, look.model >= 0);
+    const Pose path = PoseAt(record.kinematics, now_s);
+    const ObjectShow show = HowToShow(view, matrices, path.position_ecef, radius_m, look.model >= 0);
     if (show.how == ObjectShow::How::kNot) return;
 
-    Pose pose = Smoothed(record, now_s, still_shown);
-    const Geodetic position = ToGeodetic(pose.position_ecef);
-    if (record.type.is_ground_platform() && terrain_ != nullptr) pose = Stand(pose, position);
+    ShownObject& shown = shown_.Show(record, number_);
+    Pose pose = shown.smoother.Show(record.kinematics, path, record.report, now_s);
+    if (record.type.is_ground_platform() && terrain_ != nullptr) pose = Stand(pose, ToGeodetic(pose.position_ecef));
 
-    Candidate candidate;
-    ObjectInstance& instance = candidate.instance;
+    ObjectInstance& instance = instances_.emplace_back();
     instance.position_ecef = pose.position_ecef;
     instance.velocity_mps = pose.velocity_ecef_mps;
     instance.ecef_from_body = pose.ecef_from_body;
@@ -110,13 +140,97 @@ class ObjectManager::Worker {
     instance.look.symbol = static_cast<uint8_t>(look.symbol);
     instance.object = static_cast<uint64_t>(record.id.site) << 32 | static_cast<uint64_t>(record.id.application) << 16 |
                       record.id.entity;
-    if (show.how == ObjectShow::How::kModel) ChooseModel(model, model_key, show, pages, instance);
-    if (view.labels) {
-      instance.label = static_cast<uint32_t>(list.labels.size());
-      list.labels.push_back(LabelText(record, position.height_m));
+    if (show.how == ObjectShow::How::kModel) ChooseModel(model, ModelKey(look.model), show, pages, instance);
+    const auto index = static_cast<uint32_t>(instances_.size() - 1);
+    candidates_.push_back({GroupOf(instance.position_ecef), index});
+    if (view.labels) WishLabel(record, look, shown, view, matrices, index);
+  }
+
+  // Coarser models, all by the same error on the screen, until they have no more triangles than a view may have.
+  void KeepTriangleBudget() {
+    for (double error_px = 2; error_px <= kCoarsestDetail_px; error_px *= 2) {
+      uint64_t triangles = 0;
+      for (const DrawnModel& drawn : drawn_models_) {
+        triangles += drawn.model->details[instances_[drawn.instance].look.detail].index_count / 3;
+      }
+      if (triangles <= kMostObjectTriangles) return;
+      for (const DrawnModel& drawn : drawn_models_) {
+        instances_[drawn.instance].look.detail = ChooseDetail(*drawn.model, drawn.metre_px, error_px);
+      }
     }
-    candidate.group = Quadcode::Containing(position.latitude_deg, position.longitude_deg, kGroupLevel);
-    candidates.push_back(candidate);
+  }
+
+  const EntityLook& LookOf(const EntityType& type) {
+    constexpr size_t kMostTypes = 4096;
+    if (known_looks_.size() >= kMostTypes) known_looks_.clear();
+    const EntityLook*& look = known_looks_[PackedType(type)];
+    if (look == nullptr) look = &looks_.LookOf(type);
+    return *look;
+  }
+
+  // The model's page, looked for once a list; nullptr while it is not in memory.
+  const ModelPage* ModelOf(int model, ListPages& pages) {
+    if (models_ == nullptr || model < 0) return nullptr;
+    const auto index = static_cast<size_t>(model);
+    if (index >= models_found_.size()) models_found_.resize(index + 1);
+    auto& found = models_found_[index];
+    if (!found) found = static_cast<const ModelPage*>(pages.Find(ModelKey(model)));
+    return *found;
+  }
+
+  struct DrawnModel {
+    uint32_t instance;
+    const ModelPage* model;
+    double metre_px;
+  };
+
+  // ---- labels
+
+  struct Wisher {
+    const ObjectRecord* record;
+    const EntityLook* look;
+    uint32_t instance;
+  };
+
+  void WishLabel(const ObjectRecord& record, const EntityLook& look, const ShownObject& shown,
+                 const ViewParameters& view, const ViewMatrices& matrices, uint32_t index) {
+    const ObjectInstance& instance = instances_[index];
+    const glm::dvec4 camera = matrices.camera_from_ecef * glm::dvec4(instance.position_ecef, 1.0);
+    const glm::dvec4 clip = matrices.clip_from_camera * camera;
+    if (clip.w <= 0 || std::abs(clip.x) > clip.w || std::abs(clip.y) > clip.w) return;
+    const double metre_px = view.projection == Projection::kPerspective
+                                ? matrices.pixels_per_radian / std::max(-camera.z, matrices.near_m)
+                                : matrices.pixels_per_metre;
+    LabelWish wish;
+    wish.anchor_px = {static_cast<float>((0.5 + 0.5 * clip.x / clip.w) * view.width_px),
+                      static_cast<float>((0.5 - 0.5 * clip.y / clip.w) * view.height_px)};
+    wish.beside_px = BesideLabel(instance.look.model_slot >= 0 && !view.symbols, metre_px * instance.radius_m);
+    wish.distance_m = static_cast<float>(-camera.z);
+    wish.size = FormatOf(view).SizeFor(record);
+    wish.shown_before = shown.labelled;
+    wish.side_before = shown.label_side;
+    wishes_.push_back(wish);
+    wishers_.push_back({&record, &look, index});
+  }
+
+  const LabelFormat& FormatOf(const ViewParameters& view) const {
+    return view.label_format != nullptr ? *view.label_format : usual_format_;
+  }
+
+  void AddLabels(const ViewParameters& view, DisplayList& list) {
+    for (const Wisher& wisher : wishers_) shown_.Find(wisher.record->slot)->labelled = false;
+    for (const LabelPlace& place : layout_.Lay(wishes_, view.width_px, view.height_px)) {
+      const Wisher& wisher = wishers_[place.wish];
+      ObjectInstance& instance = instances_[wisher.instance];
+      ShownObject& shown = *shown_.Find(wisher.record->slot);
+      shown.labelled = true;
+      shown.label_side = place.side;
+      instance.label = static_cast<uint32_t>(list.labels.size());
+      const Geodetic at = ToGeodetic(instance.position_ecef);
+      const LabelFacts facts{*wisher.record,   wisher.look->name, at.latitude_deg,
+                             at.longitude_deg, at.height_m,       instance.velocity_mps};
+      list.labels.push_back({FormatOf(view).Write(facts), place.side});
+    }
   }
 
   PageKey ModelKey(int model) const {
@@ -124,8 +238,8 @@ class ObjectManager::Worker {
     return {models_->type, ModelCatalogue::ModelNode(model)};
   }
 
-  static void ChooseModel(const ModelPage* model, const PageKey& key, const ObjectShow& show, ListPages& pages,
-                          ObjectInstance& instance) {
+  void ChooseModel(const ModelPage* model, const PageKey& key, const ObjectShow& show, ListPages& pages,
+                   ObjectInstance& instance) {
     const std::optional<int> slot = model != nullptr ? pages.Slot(key) : std::nullopt;
     if (!slot) {
       pages.Want(key, static_cast<float>(show.size_px));
@@ -133,14 +247,8 @@ class ObjectManager::Worker {
     }
     instance.look.model_slot = *slot;
     instance.look.detail = ChooseDetail(*model, show.metre_px);
+    drawn_models_.push_back({static_cast<uint32_t>(instances_.size() - 1), model, show.metre_px});
     instance.look.symbol = static_cast<uint8_t>(SymbolShape::kNone);
-  }
-
-  Pose Smoothed(const ObjectRecord& record, double now_s, std::unordered_map<EntityId, Smoother>& still_shown) {
-    auto known = smoothers_.extract(record.id);
-    const auto place =
-        known.empty() ? still_shown.try_emplace(record.id).first : still_shown.insert(std::move(known)).position;
-    return place->second.Show(record.kinematics, record.report, now_s);
   }
 
   Pose Stand(const Pose& pose, const Geodetic& position) const {
@@ -150,23 +258,25 @@ class ObjectManager::Worker {
   }
 
   // Instances, grouped by place; one culling volume a group.
-  static void Emit(std::vector<Candidate>& candidates, DisplayList& list) {
-    std::sort(candidates.begin(), candidates.end(),
-              [](const Candidate& a, const Candidate& b) { return a.group < b.group; });
-    for (size_t begin = 0; begin < candidates.size();) {
+  void Emit(DisplayList& list) {
+    std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
+      return a.group != b.group ? a.group < b.group : a.instance < b.instance;
+    });
+    list.instances.reserve(candidates_.size());
+    for (size_t begin = 0; begin < candidates_.size();) {
       size_t end = begin;
       glm::dvec3 center(0.0);
-      for (; end < candidates.size() && candidates[end].group == candidates[begin].group; ++end) {
-        center += candidates[end].instance.position_ecef;
+      const auto first = static_cast<uint32_t>(list.instances.size());
+      for (; end < candidates_.size() && candidates_[end].group == candidates_[begin].group; ++end) {
+        list.instances.push_back(instances_[candidates_[end].instance]);
+        center += list.instances.back().position_ecef;
       }
       center /= static_cast<double>(end - begin);
       double radius = 0;
-      const auto first = static_cast<uint32_t>(list.instances.size());
-      for (size_t i = begin; i < end; ++i) {
-        const ObjectInstance& instance = candidates[i].instance;
+      for (size_t i = first; i < list.instances.size(); ++i) {
+        const ObjectInstance& instance = list.instances[i];
         radius = std::max(radius, glm::distance(center, instance.position_ecef) + instance.radius_m +
                                       kGroupLookAhead_s * glm::length(instance.velocity_mps));
-        list.instances.push_back(instance);
       }
       const auto record = static_cast<uint32_t>(list.records.size());
       list.records.push_back({ListRecord::Kind::kCullBegin, static_cast<uint32_t>(list.volumes.size()), 0, record + 3});
@@ -187,8 +297,18 @@ class ObjectManager::Worker {
   const Layer* const models_;
   bool published_none_ = false;
   uint64_t number_ = 0;
-  std::unordered_map<EntityId, Smoother> smoothers_;  // of the objects that the last list showed
-  PacedThread thread_;                                // last: it stops before the members above go
+  ShownObjects shown_;
+  std::unordered_map<uint64_t, const EntityLook*> known_looks_;  // by type
+  const LabelFormat usual_format_;
+  LabelLayout layout_;
+  // Of the list that is being made:
+  std::vector<ObjectInstance> instances_;
+  std::vector<Candidate> candidates_;
+  std::vector<DrawnModel> drawn_models_;
+  std::vector<LabelWish> wishes_;
+  std::vector<Wisher> wishers_;  // who wishes[i] is of
+  std::vector<std::optional<const ModelPage*>> models_found_;
+  PacedThread thread_;  // last: it stops before the members above go
 };
 
 ObjectManager::ObjectManager(ViewId view, Paging& paging, const EntityLooks& looks, const ObjectTable& objects,

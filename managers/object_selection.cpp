@@ -2,7 +2,6 @@
 
 #include "runtime/earth/ellipsoid.h"
 
-#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -13,10 +12,8 @@ namespace {
 
 constexpr double kLeast_px = 0.3;  // smaller ones are not shown at all
 constexpr double kModel_px = 4.0;  // from here on the model says more than a symbol
-constexpr double kDetailError_px = 1.0;
 constexpr double kBesidePicture =
     0.15;  // objects this share of their distance beside the picture are kept: they may move in
-constexpr double kMetresPerFlightLevel = 30.48;
 
 }  // namespace
 
@@ -40,9 +37,9 @@ ObjectShow HowToShow(const ViewParameters& view, const ViewMatrices& matrices, c
   return show;
 }
 
-uint8_t ChooseDetail(const ModelPage& model, double metre_px) {
+uint8_t ChooseDetail(const ModelPage& model, double metre_px, double error_px) {
   size_t chosen = 0;
-  while (chosen + 1 < model.details.size() && model.details[chosen + 1].error_m * metre_px < kDetailError_px) ++chosen;
+  while (chosen + 1 < model.details.size() && model.details[chosen + 1].error_m * metre_px < error_px) ++chosen;
   return static_cast<uint8_t>(chosen);
 }
 
@@ -70,10 +67,17 @@ std::array<uint8_t, 4> ForceColour(uint8_t force) {
   }
 }
 
-std::string LabelText(const ObjectRecord& record, double height_m) {
-  const std::string name = record.marking.empty() ? record.id.ToString() : std::string(record.marking.view());
-  if (!record.type.is_air_platform()) return name;
-  return fmt::format("{} FL{:03d}", name, std::max(0, static_cast<int>(std::lround(height_m / kMetresPerFlightLevel))));
+bool MayBeSeen(const ViewMatrices& matrices, const KinematicState& state, double radius_m, double now_s) {
+  const double dt_s = std::abs(now_s - state.time_s);
+  double moved_m = 0;
+  if (state.model != DeadReckoning::kStatic) {
+    moved_m = dt_s * glm::length(state.velocity_mps);
+    if (ModelAccelerates(state.model)) moved_m += 0.5 * dt_s * dt_s * glm::length(state.acceleration_mps2);
+  }
+  const double reach_m = radius_m + moved_m + SmoothingOptions{}.jump_m;  // a correction may keep it that far off
+  if (matrices.horizon.Hides({state.position_ecef, reach_m})) return false;
+  const double distance_m = glm::distance(state.position_ecef, matrices.eye_ecef);
+  return !matrices.frustum.Hides({state.position_ecef, reach_m + kBesidePicture * distance_m});
 }
 
 }  // namespace belvedere

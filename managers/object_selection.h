@@ -29,8 +29,11 @@ struct ObjectShow {
 ObjectShow HowToShow(const ViewParameters& view, const ViewMatrices& matrices, const glm::dvec3& position_ecef,
                      double radius_m, bool has_model);
 
-// The coarsest level whose error is under a pixel.
-uint8_t ChooseDetail(const ModelPage& model, double metre_px);
+// The coarsest level whose error is under that many pixels.
+uint8_t ChooseDetail(const ModelPage& model, double metre_px, double error_px = 1.0);
+
+// Triangles that the models of one view may have together. Where those within a pixel have more, all become coarser.
+inline constexpr uint64_t kMostObjectTriangles = 400'000;
 
 // The pose of a vehicle that stands on the ground: lowered or raised onto it, upright to its normal, heading kept.
 Pose StandOn(const Pose& pose, double ground_height_m, const glm::dvec3& ground_normal_ecef);
@@ -38,7 +41,8 @@ Pose StandOn(const Pose& pose, double ground_height_m, const glm::dvec3& ground_
 // Colour by force: friendly blue, opposing red, neutral green, others yellow.
 std::array<uint8_t, 4> ForceColour(uint8_t force);
 
-// "UAL123 FL350" for what flies, the marking alone for others; the entity's id where it has no marking.
-std::string LabelText(const ObjectRecord& record, double height_m);
+// False when the object cannot be in the picture, wherever its report lets it be dead-reckoned to by now. Cheap:
+// nothing is dead-reckoned.
+bool MayBeSeen(const ViewMatrices& matrices, const KinematicState& state, double radius_m, double now_s);
 
 }  // namespace belvedere

@@ -26,6 +26,8 @@ struct FrameSample {
   double achieved_error_px = 0;
   bool behind = false;
   bool has_terrain = false;  // a terrain list was there to draw
+  double objects_ms = 0;     // that the newest list of objects took to make
+  uint32_t instances = 0;    // in it
   double upload_ms = 0;      // of the frame, all views together; the same number in each of them
   uint64_t upload_bytes = 0;
 };

@@ -7,20 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <vector>
+#include <string_view>
 
 namespace belvedere {
 namespace {
 
 constexpr double kPulledForward =
     0.97;  // overlays are this much nearer than their object, to stand clear of the ground
-
-struct Rectangle {
-  float left, top, right, bottom;
-  bool Overlaps(const Rectangle& other) const {
-    return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
-  }
-};
 
 // Angle on the screen, clockwise from up, of where the object's nose points; 0 when it points along the line of sight.
 float HeadingOnScreen(const MovedObject& object, const ViewParameters& view) {
@@ -34,6 +27,27 @@ float HeadingOnScreen(const MovedObject& object, const ViewParameters& view) {
 // Ground symbols are upright squares; those that have a bow turn with it.
 bool Turns(SymbolShape shape) {
   return shape == SymbolShape::kAir || shape == SymbolShape::kSurface;
+}
+
+void AddLabel(const ObjectLabel& label, const MovedObject& object, float beside_px, float depth,
+              OverlayBatch::Colour colour, OverlayBatch& batch) {
+  constexpr float kAscent_px = 11, kLeaderWidth_px = 1;
+  const std::string text = ToLatin1(label.text);
+  const LabelBox box = BoxOf(label.side, beside_px, SizeOf(text));
+  const bool left_of = box.right < 0;
+  if (box.has_leader) {
+    const glm::vec2 end(left_of ? box.right + 2 : box.left - 2, 0.5F * (box.top + box.bottom));
+    const glm::vec2 begin = glm::normalize(end) * std::min(beside_px, glm::length(end));
+    batch.AddLine(object.screen_px + begin, object.screen_px + end, kLeaderWidth_px, depth, colour);
+  }
+  float baseline = object.screen_px.y + box.top + kAscent_px;
+  for (size_t at = 0; at < text.size(); baseline += kLabelLine_px) {
+    const size_t end = std::min(text.find('\n', at), text.size());
+    const std::string_view line = std::string_view(text).substr(at, end - at);
+    const float x = left_of ? box.right - batch.atlas().WidthOf(line) : box.left;
+    batch.AddText(object.screen_px.x + x, baseline, depth, line, colour);
+    at = end + 1;
+  }
 }
 
 }  // namespace
@@ -52,21 +66,11 @@ void AddObjectOverlay(const DisplayList& list, std::span<const MovedObject> obje
     batch.AddSymbol(object->screen_px, depth_of(*object), shape, angle, 1.0F, instance.look.colour);
   }
   if (!view.labels) return;
-  std::vector<Rectangle> taken;
   for (const MovedObject& object : objects) {
     const ObjectInstance& instance = list.instances[object.instance];
-    if (instance.label == 0 || instance.label >= list.labels.size() || taken.size() >= kMaxLabels) continue;
-    const std::string text = ToLatin1(list.labels[instance.label]);
-    const float beside =
-        DrawnAsModel(instance, view) ? std::clamp(object.radius_px, 3.0F, 60.0F) : 0.5F * Atlas::kSymbolSide_px;
-    const float left = object.screen_px.x + beside + 3.0F;
-    const float baseline = object.screen_px.y + 5.0F;
-    const Rectangle place{left - 2.0F, baseline - Atlas::kFontHeight_px, left + batch.atlas().WidthOf(text) + 2.0F,
-                          baseline + 4.0F};
-    if (std::any_of(taken.begin(), taken.end(), [&](const Rectangle& other) { return place.Overlaps(other); }))
-      continue;
-    taken.push_back(place);
-    batch.AddText(left, baseline, depth_of(object), text, instance.look.colour);
+    if (instance.label == 0 || instance.label >= list.labels.size()) continue;
+    AddLabel(list.labels[instance.label], object, BesideLabel(DrawnAsModel(instance, view), object.radius_px),
+             depth_of(object), instance.look.colour, batch);
   }
 }
 

@@ -1,5 +1,5 @@
 // Symbols and labels of moving objects. Symbols keep their size on the screen and turn with the object's heading;
-// labels stand beside the object, and where two would overlap the nearer object keeps its own.
+// labels stand where the object manager found room for them, joined to the object by a line where they stand off.
 //
 // Threads: pure function.
 #pragma once
@@ -7,12 +7,9 @@
 #include "render/moved_objects.h"
 #include "render/overlay_pass.h"
 
-#include <cstddef>
 #include <span>
 
 namespace belvedere {
-
-inline constexpr size_t kMaxLabels = 300;  // a view; more could not be read
 
 // objects: nearest first, as MoveObjects returns them.
 void AddObjectOverlay(const DisplayList& list, std::span<const MovedObject> objects, const ViewParameters& view,

@@ -2,6 +2,8 @@
 
 #include "render/shader_sources.h"
 
+#include <glm/geometric.hpp>
+
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -53,6 +55,14 @@ void OverlayBatch::AddSymbol(glm::vec2 center, float depth, SymbolShape shape, f
 void OverlayBatch::AddRectangle(float x, float y, float width, float height, float depth, Colour colour) {
   AddQuad({glm::vec2{x, y}, glm::vec2{x + width, y}, glm::vec2{x + width, y + height}, glm::vec2{x, y + height}}, depth,
           atlas_->solid(), colour);
+}
+
+void OverlayBatch::AddLine(glm::vec2 from, glm::vec2 to, float width, float depth, Colour colour) {
+  const glm::vec2 along = to - from;
+  const float length = glm::length(along);
+  if (length < 0.5F) return;
+  const glm::vec2 across = (0.5F * width / length) * glm::vec2{-along.y, along.x};
+  AddQuad({from + across, to + across, to - across, from - across}, depth, atlas_->solid(), colour);
 }
 
 void OverlayBatch::Append(const OverlayBatch& other) {

@@ -35,6 +35,7 @@ class OverlayBatch {
   // Turned clockwise by angle_rad on the screen; 0 points up.
   void AddSymbol(glm::vec2 center, float depth, SymbolShape shape, float angle_rad, float scale, Colour colour);
   void AddRectangle(float x, float y, float width, float height, float depth, Colour colour);
+  void AddLine(glm::vec2 from, glm::vec2 to, float width, float depth, Colour colour);
   void Append(const OverlayBatch& other);
   const std::vector<Vertex>& vertices() const { return vertices_; }  // 4 a quad
   const Atlas& atlas() const { return *atlas_; }

@@ -325,6 +325,11 @@ void Renderer::Report(View& view, double frame_ms, double draw_ms, const Drawn& 
   sample.achieved_error_px = terrain.statistics.achieved_error_px;
   sample.behind = report.behind;
   sample.has_terrain = view.has_terrain;
+  if (view.has_objects) {
+    const DisplayList& objects = view.channel->object_lists.front();
+    sample.objects_ms = objects.statistics.build_ms;
+    sample.instances = static_cast<uint32_t>(objects.instances.size());
+  }
   sample.upload_ms = upload_ms_;
   sample.upload_bytes = upload_bytes_;
   recorder.Add(sample);

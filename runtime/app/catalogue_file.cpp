@@ -39,7 +39,7 @@ Result<Catalogue> LoadCatalogue(const std::string& folder) {
     if (!table.Has("name")) table.Complain("name", "is missing: the model's file without its ending");
     const auto length_m = table.Number("length_m", 0.01, kLongest_m);
     if (!table.Has("length_m")) table.Complain("length_m", "is missing: the real thing's length in metres");
-    const EntityLook look{static_cast<int>(entries.size()), ReadSymbol(table)};
+    const EntityLook look{static_cast<int>(entries.size()), ReadSymbol(table), name.value_or("")};
     for (const std::string& text : table.Strings("entity_types").value_or(std::vector<std::string>{})) {
       const auto pattern = EntityPattern::Parse(text);
       if (!pattern)

@@ -78,6 +78,11 @@ ViewSpec ReadView(SettingsTable& table) {
   Assign(table.Number("texel_px", 0.25, 100), view.texel_px);
   Assign(table.Boolean("hud"), view.hud);
   Assign(table.Boolean("labels"), view.labels);
+  if (const auto text = table.String("label")) {
+    Result<LabelFormat> format = LabelFormat::Parse(*text);
+    if (format.ok()) view.label_format = std::make_shared<const LabelFormat>(std::move(*format));
+    if (!format.ok()) table.Complain("label", fmt::format("is wrong: {}", format.message()));
+  }
   Assign(table.Boolean("objects"), view.objects);
   Assign(table.Boolean("symbols"), view.symbols);
   Assign(table.Boolean("sky"), view.sky);

@@ -11,9 +11,11 @@
 #include "runtime/app/tether.h"
 #include "runtime/base/status.h"
 #include "runtime/earth/units.h"
+#include "runtime/scene/label_format.h"
 #include "runtime/scene/object_table.h"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,6 +38,7 @@ struct ViewSpec {
 
   std::vector<std::string> layers;  // image layers in their written form (layer_text.h)
   double error_px = 2.0, texel_px = 1.25;
+  std::shared_ptr<const LabelFormat> label_format;  // nullptr: the usual one
   bool hud = true, labels = true, objects = true, symbols = false, sky = true;
 };
 

@@ -236,6 +236,7 @@ ViewParameters ViewPilot::Parameters(uint64_t number, double time_s, double utc_
   view.draw_objects = objects_;
   view.symbols = symbols_;
   view.labels = labels_;
+  view.label_format = spec_.label_format;
   view.hud = hud_;
   view.sky = sky_;
   view.wireframe = wireframe_;

@@ -31,6 +31,7 @@
 #include "runtime/earth/visibility.h"
 #include "runtime/paging/page.h"
 #include "runtime/paging/shared_cache.h"
+#include "runtime/scene/label_box.h"
 
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
@@ -114,6 +115,12 @@ struct ObjectInstance {
   uint64_t object = 0;  // ObjectId, for picking and for tests
 };
 
+// The data block of an object: lines of text, and the side on which it stands (label_box.h).
+struct ObjectLabel {
+  std::string text;
+  LabelSide side = LabelSide::kRight;
+};
+
 // How many pages of a layer a list has looked for, by where they are.
 struct LayerPages {
   std::string layer;
@@ -136,7 +143,7 @@ struct DisplayList {
   std::vector<uint32_t> indices;
   std::vector<TerrainDraw> terrain_draws;
   std::vector<ObjectInstance> instances;
-  std::vector<std::string> labels;  // labels[0] is empty
+  std::vector<ObjectLabel> labels;  // labels[0] is empty; no two of them overlap
 
   std::vector<LayerPages> layer_pages;
 

@@ -3,23 +3,24 @@
 namespace belvedere {
 namespace {
 
-SymbolShape SymbolOfDomain(const EntityType& type) {
-  switch (type.domain) {
-    case 1: return SymbolShape::kGround;
-    case 2: return SymbolShape::kAir;
-    case 3: return SymbolShape::kSurface;
-    case 4: return SymbolShape::kSubsurface;
-    default: return SymbolShape::kOther;
-  }
+// Of what no rule fits, by domain: other, land, air, surface, subsurface.
+const std::array<EntityLook, 5>& LooksOfDomains() {
+  static const std::array<EntityLook, 5> kLooks = {{{-1, SymbolShape::kOther, {}},
+                                                    {-1, SymbolShape::kGround, {}},
+                                                    {-1, SymbolShape::kAir, {}},
+                                                    {-1, SymbolShape::kSurface, {}},
+                                                    {-1, SymbolShape::kSubsurface, {}}}};
+  return kLooks;
 }
 
 }  // namespace
 
-EntityLook EntityLooks::LookOf(const EntityType& type) const {
+const EntityLook& EntityLooks::LookOf(const EntityType& type) const {
   for (const EntityRule& rule : rules_) {
     if (rule.pattern.Fits(type)) return rule.look;
   }
-  return {-1, SymbolOfDomain(type)};
+  const auto& looks = LooksOfDomains();
+  return looks[type.domain < looks.size() ? type.domain : 0];
 }
 
 }  // namespace belvedere

@@ -9,6 +9,8 @@
 #include "runtime/scene/display_list.h"
 #include "runtime/scene/entity.h"
 
+#include <array>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,6 +19,7 @@ namespace belvedere {
 struct EntityLook {
   int model = -1;  // number in the model catalogue; -1 none
   SymbolShape symbol = SymbolShape::kOther;
+  std::string name{};  // of that model
 };
 
 struct EntityRule {
@@ -28,7 +31,8 @@ class EntityLooks {
  public:
   EntityLooks() = default;
   explicit EntityLooks(std::vector<EntityRule> rules) : rules_(std::move(rules)) {}
-  EntityLook LookOf(const EntityType& type) const;
+  // Valid as long as this.
+  const EntityLook& LookOf(const EntityType& type) const;
 
  private:
   std::vector<EntityRule> rules_;

@@ -200,20 +200,20 @@ Pose PoseAt(const KinematicState& state, double time_s) {
   return pose;
 }
 
-Pose Smoother::Show(const KinematicState& state, uint32_t report, double time_s, const SmoothingOptions& options) {
+Pose Smoother::Show(const KinematicState& state, const Pose& path, uint32_t report, double time_s,
+                    const SmoothingOptions& options) {
   if (!path_ || time_s - shown_s_ > kUnseen_s) {
     correction_ = {};
   } else if (report != report_) {
-    Correct(state, time_s, options);
+    Correct(path, time_s, options);
   }
   path_ = state;
   report_ = report;
   shown_s_ = time_s;
-  return ShowPath(state, time_s);
+  return Corrected(path, time_s);
 }
 
-Pose Smoother::ShowPath(const KinematicState& path, double time_s) const {
-  Pose pose = PoseAt(path, time_s);
+Pose Smoother::Corrected(Pose pose, double time_s) const {
   const double since_s = time_s - correction_.start_s;
   if (since_s >= correction_.duration_s) return pose;
   const double duration_s = correction_.duration_s;
@@ -228,9 +228,8 @@ Pose Smoother::ShowPath(const KinematicState& path, double time_s) const {
   return pose;
 }
 
-void Smoother::Correct(const KinematicState& state, double time_s, const SmoothingOptions& options) {
-  const Pose shown = ShowPath(*path_, time_s);
-  const Pose next = PoseAt(state, time_s);
+void Smoother::Correct(const Pose& next, double time_s, const SmoothingOptions& options) {
+  const Pose shown = Corrected(PoseAt(*path_, time_s), time_s);
   correction_ = {};
   Correction correction;
   correction.offset_ecef = shown.position_ecef - next.position_ecef;

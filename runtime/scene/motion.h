@@ -99,7 +99,12 @@ struct SmoothingOptions {
 class Smoother {
  public:
   // The pose at time_s, which must not go back. `report` tells states apart: it changes with every new one.
-  Pose Show(const KinematicState& state, uint32_t report, double time_s, const SmoothingOptions& options = {});
+  Pose Show(const KinematicState& state, uint32_t report, double time_s, const SmoothingOptions& options = {}) {
+    return Show(state, PoseAt(state, time_s), report, time_s, options);
+  }
+  // The same for those who have PoseAt(state, time_s) already.
+  Pose Show(const KinematicState& state, const Pose& path, uint32_t report, double time_s,
+            const SmoothingOptions& options = {});
 
  private:
   struct Correction {
@@ -109,8 +114,8 @@ class Smoother {
     double start_s = 0;
     double duration_s = 0;  // 0: none
   };
-  Pose ShowPath(const KinematicState& path, double time_s) const;
-  void Correct(const KinematicState& state, double time_s, const SmoothingOptions& options);
+  Pose Corrected(Pose path, double time_s) const;
+  void Correct(const Pose& path, double time_s, const SmoothingOptions& options);
 
   std::optional<KinematicState> path_;
   uint32_t report_ = 0;

@@ -198,6 +198,8 @@ ObjectTable::Slot ObjectTable::AddSlot(EntityId id) {
     entries_[slot] = {};
   }
   entries_[slot].record.id = id;
+  entries_[slot].record.slot = slot;
+  entries_[slot].record.incarnation = ++incarnations_;
   entries_[slot].record.kinematics.time_s = -HUGE_VAL;
   entries_[slot].line = lines_.size() - 1;
   LinkFreshest(slot);
@@ -264,9 +266,11 @@ void ObjectTable::Accept(Slot slot, const ObjectRecord& record) {
     return;
   }
   entries_[slot].held = false;
-  const uint32_t report = mine.report + 1;
+  const uint32_t report = mine.report + 1, incarnation = mine.incarnation;
   mine = record;
   mine.report = report;
+  mine.slot = slot;
+  mine.incarnation = incarnation;
   mine.part_count = std::min(mine.part_count, static_cast<uint8_t>(ObjectRecord::kMaxParts));
   mine.flags =
       static_cast<uint8_t>((record.flags & kObjectUnknownModel) | PositionFlags(mine.kinematics.position_ecef));

@@ -63,6 +63,8 @@ struct ObjectRecord {
   double received_s = 0;
   uint8_t protocol_version = 7;  // of the report, for TimeoutRule
   uint64_t source = 0;           // who reported it: a number of the network's making, equal for one host
+  uint32_t slot = 0;             // the table's number for it while it is known, under the capacity;
+  uint32_t incarnation = 0;      // with this, which counts all that were ever added, for itself alone
   uint32_t report = 0;           // counts the reports of this object; changes with each
 
   bool visible() const { return (flags & kObjectNotVisible) == 0; }
@@ -178,6 +180,7 @@ class ObjectTable {
   bool changed_ GUARDED_BY(mutex_) = false;
   double next_publish_s_ GUARDED_BY(mutex_);
   uint64_t snapshots_ GUARDED_BY(mutex_) = 0;
+  uint32_t incarnations_ GUARDED_BY(mutex_) = 0;
   ObjectTableCounters counters_ GUARDED_BY(mutex_);
 
   mutable Mutex published_mutex_;

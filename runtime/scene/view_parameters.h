@@ -20,9 +20,12 @@
 #include <glm/vec3.hpp>
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace belvedere {
+
+class LabelFormat;
 
 // One image layer as a view shows it: a texel c becomes multiplier * c^gamma, and opacity says how much of it counts.
 struct LayerUse {
@@ -64,6 +67,7 @@ struct ViewParameters {
   bool draw_objects = true;
   bool symbols = false;  // objects as symbols of constant size instead of models (the overview)
   bool labels = true;
+  std::shared_ptr<const LabelFormat> label_format;  // nullptr: marking and flight level
   bool hud = true;
   bool sky = true;
   bool wireframe = false;

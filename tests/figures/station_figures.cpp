@@ -8,6 +8,8 @@
 //       quadnodes and triangles of views at the poles over those at the equator, from the same heights
 //   station_figures feed DATASET [SECONDS]
 //       20,000 Entity State PDUs a second from 5,000 entities while three views draw
+//   station_figures entities DATASET [COUNT] [SECONDS] [PICTURE.png]
+//       COUNT (10,000) aircraft in one view of 1024 x 768: what the object manager and the render thread take
 //   station_figures malformed DATASET FOLDER
 //       sends every .bin file of the folder to a running station, which goes on drawing
 //   station_figures jump DATASET [JUMPS]
@@ -19,6 +21,7 @@
 
 #include "dis/traffic_sender.h"
 #include "dis/udp_sender.h"
+#include "render/image_file.h"
 #include "runtime/app/percentiles.h"
 #include "runtime/app/station.h"
 #include "runtime/earth/ellipsoid.h"
@@ -232,6 +235,75 @@ int Feed(const std::string& dataset, double seconds) {
   return counters.intake.accepted + counters.lost_by_kernel == sent && longest_ms < 150 ? 0 : 1;
 }
 
+// Aircraft in rows that fill a view from kOverTheSierra straight down, flying north.
+std::vector<ObjectRecord> Formation(size_t count) {
+  const size_t side = static_cast<size_t>(std::ceil(std::sqrt(static_cast<double>(count))));
+  std::vector<ObjectRecord> records(count);
+  for (size_t i = 0; i < count; ++i) {
+    const double row = static_cast<double>(i / side),
+                 column = static_cast<double>(i % side) - 0.5 * static_cast<double>(side);
+    const double span_deg = 0.010 / static_cast<double>(side);
+    const Geodetic place{kOverTheSierra.latitude_deg + span_deg * (row - 0.5 * static_cast<double>(side)),
+                         kOverTheSierra.longitude_deg + 1.5 * span_deg * column, kOverTheSierra.height_m - 1000};
+    ObjectRecord& record = records[i];
+    record.id = {1, static_cast<uint16_t>(1 + i / 60'000), static_cast<uint16_t>(1 + i % 60'000)};
+    record.type = {EntityType::kPlatform, EntityType::kAir, 225, static_cast<uint8_t>(i % 2 == 0 ? 57 : 1), 1, 0, 0};
+    record.force = static_cast<uint8_t>(1 + i % 3);
+    record.marking = Marking::Sanitise(fmt::format("E{}", i));
+    record.kinematics.model = DeadReckoning::kRvw;
+    record.kinematics.position_ecef = ToEcef(place);
+    const glm::dmat3 axes = CameraAxes(place.latitude_deg, place.longitude_deg, {}, {}, {});
+    record.kinematics.velocity_mps = -1.0 * axes[2];  // the camera looks along its -z
+    record.kinematics.orientation = ToEulerAngles(glm::dmat3(-axes[2], axes[0], -axes[1]));
+    record.kinematics.angular_velocity_radps = {0, 0, 0.001};
+  }
+  return records;
+}
+
+int Entities(const std::string& dataset, size_t count, double seconds, const std::string& picture_path) {
+  auto station = StartStation(dataset, 512 * kMiB, false, 0);
+  const Clock& clock = Clock::System();
+  std::vector<ObjectRecord> records = Formation(count);
+  const auto put = [&](ObjectRecord& record) {
+    record.kinematics.time_s = record.received_s = clock.NowSeconds();
+    station->objects().Put(record);
+  };
+  for (ObjectRecord& record : records) put(record);
+  station->objects().Tick(clock.NowSeconds());
+  ViewParameters view = ViewFrom(*station, 1, kOverTheSierra, 0, -90);
+  view.eye_velocity_mps = {0.01, 0, 0};  // so that it is drawn again and again
+  station->AddView(view, nullptr);
+  Settle(*station, 1, 60);
+  station->render().TakeSamples();
+  size_t next = 0;
+  for (const double end_s = clock.NowSeconds() + seconds; clock.NowSeconds() < end_s; Sleep(0.01)) {
+    for (size_t i = 0; i < std::min<size_t>(count / 500 + 1, 200); ++i) put(records[next++ % count]);
+    station->objects().Tick(clock.NowSeconds());
+  }
+  std::vector<double> frame_ms, draw_ms, objects_ms;
+  uint32_t instances = 0, triangles = 0;
+  for (const FrameSample& sample : station->render().TakeSamples()) {
+    frame_ms.push_back(sample.frame_ms);
+    draw_ms.push_back(sample.draw_ms);
+    objects_ms.push_back(sample.objects_ms);
+    instances = std::max(instances, sample.instances);
+    triangles = std::max(triangles, sample.triangles);
+  }
+  fmt::print(
+      "{} entities, {} in the list: list made in median {:.1f} ms, 95 % {:.1f} ms (limit 8); {} frames, median {:.1f} "
+      "ms, "
+      "99 % {:.1f} ms, of which drawing {:.1f} ms; {} triangles\n",
+      count, instances, PercentileOf(objects_ms, 0.5), PercentileOf(objects_ms, 0.95), frame_ms.size(),
+      PercentileOf(frame_ms, 0.5), PercentileOf(frame_ms, 0.99), PercentileOf(draw_ms, 0.5), triangles);
+  if (!picture_path.empty()) {
+    const Result<Picture> picture = station->render().Capture(1, Renderer::Moment::kOfParameters).get();
+    if (!picture.ok()) Give(picture.message());
+    const Status written = WritePng(picture_path, picture->width_px, picture->height_px, picture->rgb);
+    if (!written.ok()) Give(written.message());
+  }
+  return PercentileOf(objects_ms, 0.5) < 8 ? 0 : 1;
+}
+
 int Malformed(const std::string& dataset, const std::string& folder) {
   auto station = StartStation(dataset, 512 * kMiB, true);
   ViewParameters flying = ViewFrom(*station, 1, kOverTheSierra, 330, -12);
@@ -378,12 +450,15 @@ int Run(const std::vector<std::string>& words) {
   if (words.size() >= 2 && words[0] == "places") return Places(words[1], number(2, 6));
   if (words.size() >= 2 && words[0] == "poles") return Poles(words[1]);
   if (words.size() >= 2 && words[0] == "feed") return Feed(words[1], number(2, 30));
+  if (words.size() >= 2 && words[0] == "entities") {
+    return Entities(words[1], static_cast<size_t>(number(2, 10'000)), number(3, 10), words.size() > 4 ? words[4] : "");
+  }
   if (words.size() >= 3 && words[0] == "malformed") return Malformed(words[1], words[2]);
   if (words.size() >= 2 && words[0] == "jump") return Jump(words[1], static_cast<int>(number(2, 20)));
   if (words.size() >= 2 && words[0] == "soak") return Soak(words[1], number(2, 20));
-  fmt::print(
-      stderr,
-      "usage: station_figures views|places|poles|feed|malformed|jump|soak DATASET [SECONDS|FOLDER|JUMPS|MINUTES]\n");
+  fmt::print(stderr,
+             "usage: station_figures views|places|poles|feed|entities|malformed|jump|soak DATASET "
+             "[SECONDS|FOLDER|JUMPS|MINUTES]\n");
   return 2;
 }
 

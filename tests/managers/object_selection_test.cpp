@@ -75,15 +75,18 @@ TEST(ObjectSelection, AVehicleStandsUprightOnASlopeAndKeepsItsHeading) {
   EXPECT_NEAR(glm::determinant(standing.ecef_from_body), 1, 1e-12);
 }
 
-TEST(ObjectSelection, LabelsNameAircraftWithTheirFlightLevel) {
-  ObjectRecord record;
-  record.id = {1, 2, 3};
-  record.type = {1, 2, 225, 57, 0, 0, 0};
-  EXPECT_EQ(LabelText(record, 10'668), "1:2:3 FL350");
-  record.marking = Marking::Sanitise(std::string_view("UAL123"));
-  EXPECT_EQ(LabelText(record, 10'668), "UAL123 FL350");
-  record.type.domain = 1;
-  EXPECT_EQ(LabelText(record, 10), "UAL123");
+TEST_F(ObjectSelectionTest, WhatADeadReckonedObjectMayHaveReachedIsConsidered) {
+  const ViewMatrices matrices = MatricesOf(view_, 0, 5000);
+  KinematicState state;
+  state.position_ecef = ToEcef({37 - 3000 / 111'000.0, -118, 5000});  // 3 km behind the eye
+  state.velocity_mps = {300, 0, 0};
+  EXPECT_FALSE(MayBeSeen(matrices, state, 20, 0));
+  EXPECT_FALSE(MayBeSeen(matrices, state, 20, 12));  // it stands still
+  state.model = DeadReckoning::kFpw;
+  EXPECT_FALSE(MayBeSeen(matrices, state, 20, 2));
+  EXPECT_TRUE(MayBeSeen(matrices, state, 20, 12));
+  state.position_ecef = ToEcef({37 + 3000 / 111'000.0, -118, 5000});
+  EXPECT_TRUE(MayBeSeen(matrices, state, 20, 0));
 }
 
 TEST(ObjectSelection, ForcesDifferInColour) {

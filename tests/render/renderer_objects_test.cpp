@@ -59,7 +59,7 @@ class Objects : public OnStage {
     DisplayList& list = stage_->channel->object_lists.back();
     list.Clear();
     list.instances = instances;
-    list.labels = labels;
+    for (const std::string& label : labels) list.labels.push_back({label, LabelSide::kRight});
     list.number = 1;
     PinInto(list, scene_.AddModel(0, Cube()));
     list.records.push_back({ListRecord::Kind::kDrawInstances, 0, static_cast<uint32_t>(instances.size()), 0});
