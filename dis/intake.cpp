@@ -1,5 +1,7 @@
 #include "dis/intake.h"
 
+#include "dis/engagement_events.h"
+
 #include <glm/vec3.hpp>
 #include <numeric>
 
@@ -87,6 +89,17 @@ std::optional<Refusal> Intake::Apply(const Pdu& pdu, const Arrival& arrival) {
   if (!admission_.AdmitsPdu(arrival.from.host(), arrival.time_s)) return Refusal::kRate;
   if (const auto* state = std::get_if<EntityState>(&pdu.body)) return Apply(*state, pdu.header, arrival);
   if (const auto* update = std::get_if<EntityStateUpdate>(&pdu.body)) return Apply(*update, pdu.header, arrival);
+  if (const auto* fire = std::get_if<Fire>(&pdu.body)) {
+    for (const SceneEvent& event : EventsOf(*fire, arrival.time_s)) table_.AddEvent(event);
+  }
+  if (const auto* detonation = std::get_if<Detonation>(&pdu.body)) {
+    for (const SceneEvent& event : EventsOf(*detonation, arrival.time_s, scorch_s_)) table_.AddEvent(event);
+  }
+  if (const auto* collision = std::get_if<Collision>(&pdu.body)) {
+    if (const auto issuing = table_.Find(collision->issuing)) {
+      table_.AddEvent(EventOf(*collision, issuing->kinematics, arrival.time_s));
+    }
+  }
   if (const auto* remove = std::get_if<RemoveEntity>(&pdu.body))
     return Obey(Command::kRemove, remove->removed, arrival);
   if (const auto* stop = std::get_if<StopFreeze>(&pdu.body)) return Obey(Command::kHold, stop->receiving, arrival);

@@ -44,6 +44,7 @@ struct Arrival {
 struct IntakeOptions {
   std::optional<uint8_t> exercise{};  // only PDUs of this one; nullopt: all
   AdmissionOptions admission{};
+  double scorch_s = 300;  // how long marks of detonations stay on the ground
 };
 
 // The record that an Entity State describes, as of state_time_s.
@@ -52,7 +53,10 @@ ObjectRecord ToRecord(const EntityState& state, double state_time_s, double rece
 class Intake {
  public:
   explicit Intake(ObjectTable& table, IntakeOptions options = {})
-      : table_(table), exercise_(options.exercise), admission_(std::move(options.admission)) {}
+      : table_(table),
+        exercise_(options.exercise),
+        scorch_s_(options.scorch_s),
+        admission_(std::move(options.admission)) {}
   void Take(std::span<const uint8_t> datagram, const Arrival& arrival);
   const IntakeCounters& counters() const { return counters_; }
 
@@ -67,6 +71,7 @@ class Intake {
 
   ObjectTable& table_;
   const std::optional<uint8_t> exercise_;
+  const double scorch_s_;
   Admission admission_;
   SenderClocks clocks_;
   IntakeCounters counters_;

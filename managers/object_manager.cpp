@@ -1,5 +1,6 @@
 #include "managers/object_manager.h"
 
+#include "managers/effects.h"
 #include "managers/label_layout.h"
 #include "managers/list_pages.h"
 #include "managers/object_selection.h"
@@ -8,6 +9,7 @@
 #include "runtime/base/status.h"
 #include "runtime/base/trace.h"
 #include "runtime/earth/ellipsoid.h"
+#include "runtime/earth/sun.h"
 #include "runtime/paging/model_catalogue.h"
 #include "runtime/paging/terrain_height.h"
 #include "runtime/scene/label_format.h"
@@ -71,7 +73,8 @@ class ObjectManager::Worker {
     const std::shared_ptr<const ViewParameters> view = channel_->parameters.Get();
     if (view->number == 0) return;
     // Without objects the list that says so is enough.
-    const bool none = objects_.Snapshot()->objects.empty() || !view->draw_objects;
+    const auto snapshot = objects_.Snapshot();
+    const bool none = (snapshot->objects.empty() && snapshot->events.empty()) || !view->draw_objects;
     if (none && published_none_) return;
     published_none_ = none;
     const TraceSpan span("objects.list");
@@ -84,7 +87,7 @@ class ObjectManager::Worker {
     list.number = ++number_;
     list.time_s = now_s;
     ListPages pages(paging_, terrain_ != nullptr ? terrain_->type : DataType{0}, list);
-    if (view->draw_objects) Build(*view, now_s, pages, list);
+    if (view->draw_objects) Build(*view, *snapshot, now_s, pages, list);
     pages.Finish(view_id_, ListPages::Queues::kObjects);
     list.statistics.pages_waiting = static_cast<uint32_t>(pages.pages_waiting());
     list.statistics.settled = pages.pages_waiting() == 0;
@@ -92,15 +95,16 @@ class ObjectManager::Worker {
     channel_->object_lists.Publish();
   }
 
-  void Build(const ViewParameters& view, double now_s, ListPages& pages, DisplayList& list) {
+  void Build(const ViewParameters& view, const ObjectSnapshot& snapshot, double now_s, ListPages& pages,
+             DisplayList& list) {
     const Geodetic eye = ToGeodetic(view.EyeAt(now_s));
     const ViewMatrices matrices = MatricesOf(view, now_s, std::max(0.0, eye.height_m));
-    const std::shared_ptr<const ObjectSnapshot> snapshot = objects_.Snapshot();
     Clear();
-    for (const ObjectRecord& record : snapshot->objects) {
+    for (const ObjectRecord& record : snapshot.objects) {
       if (record.visible()) Consider(record, view, matrices, now_s, pages);
     }
     KeepTriangleBudget();
+    AddEffects(view, snapshot.events, now_s, list);
     if (view.labels) AddLabels(view, list);
     Emit(list);
     shown_.ForgetOthers(number_);
@@ -110,6 +114,7 @@ class ObjectManager::Worker {
     instances_.clear();
     candidates_.clear();
     drawn_models_.clear();
+    effect_wishes_.clear();
     wishes_.clear();
     wishers_.clear();
     models_found_.clear();
@@ -143,6 +148,8 @@ class ObjectManager::Worker {
     if (show.how == ObjectShow::How::kModel) ChooseModel(model, ModelKey(look.model), show, pages, instance);
     const auto index = static_cast<uint32_t>(instances_.size() - 1);
     candidates_.push_back({GroupOf(instance.position_ecef), index});
+    instance.look.shade = ShadeOfDamage(record.damage());
+    WishEffects(record, shown, view, matrices, index, now_s);
     if (view.labels) WishLabel(record, look, shown, view, matrices, index);
   }
 
@@ -183,6 +190,63 @@ class ObjectManager::Worker {
     const ModelPage* model;
     double metre_px;
   };
+
+  // ---- effects
+
+  struct EffectWish {
+    double distance_m;
+    const ObjectRecord* record;
+    uint32_t instance;
+    SeenAppearance seen;
+  };
+
+  void WishEffects(const ObjectRecord& record, ShownObject& shown, const ViewParameters& view,
+                   const ViewMatrices& matrices, uint32_t index, double now_s) {
+    const ObjectInstance& instance = instances_[index];
+    if (view.trails_s > 0) {
+      const double every_s = view.trails_s / (kMostTrackPoints - 2);
+      if (shown.track.empty() || now_s - shown.track.back().time_s >= every_s) {
+        if (shown.track.size() == kMostTrackPoints) shown.track.erase(shown.track.begin());
+        shown.track.push_back({instance.position_ecef, now_s});
+      }
+    } else {
+      shown.track.clear();
+    }
+    const SeenAppearance seen = view.effects ? AppearanceOf(record.type, record.appearance) : SeenAppearance{};
+    if (!seen.any() && view.trails_s <= 0 && view.vectors_s <= 0) return;
+    effect_wishes_.push_back({glm::distance(instance.position_ecef, matrices.eye_ecef), &record, index, seen});
+  }
+
+  // Events, then what belongs to objects, nearest first, as long as there is room.
+  void AddEffects(const ViewParameters& view, std::span<const SceneEvent> events, double now_s, DisplayList& list) {
+    constexpr size_t kMostOfOne = 128;  // that one event or object adds
+    if (view.effects) {
+      for (size_t i = events.size(); i-- > 0 && list.effects.size() + kMostOfOne < kMostEffects;) {
+        AddEvent(events[i], now_s, GroundOf(events[i]), list.effects);
+      }
+    }
+    std::sort(effect_wishes_.begin(), effect_wishes_.end(),
+              [](const EffectWish& a, const EffectWish& b) { return a.distance_m < b.distance_m; });
+    const glm::dvec3 sun_ecef = SunDirectionEcef(view.UtcAt(now_s));
+    for (const EffectWish& wish : effect_wishes_) {
+      if (list.effects.size() + kMostOfOne > kMostEffects) break;
+      const ObjectInstance& object = instances_[wish.instance];
+      const double sun_sine = glm::dot(glm::normalize(object.position_ecef), sun_ecef);
+      const EffectMoment moment{now_s, std::clamp((sun_sine + 0.10) / 0.25, 0.0, 1.0)};
+      const ShownObject* shown = shown_.Find(wish.record->slot);
+      AddAppearance(wish.seen, wish.record->type, object, object.object, moment, list.effects);
+      if (view.trails_s > 0) AddTrail(shown->track, object, now_s, view.trails_s, list.effects);
+      if (view.vectors_s > 0) AddVector(wish.record->kinematics, object, now_s, view.vectors_s, list.effects);
+    }
+  }
+
+  std::optional<EffectGround> GroundOf(const SceneEvent& event) const {
+    if (event.kind != SceneEvent::Kind::kScorch || terrain_ == nullptr) return std::nullopt;
+    const Geodetic place = ToGeodetic(event.position_ecef);
+    const auto ground = GroundUnder(paging_, terrain_->type, place.latitude_deg, place.longitude_deg);
+    if (!ground) return std::nullopt;
+    return EffectGround{ground->height_m, ground->normal_ecef};
+  }
 
   // ---- labels
 
@@ -305,6 +369,7 @@ class ObjectManager::Worker {
   std::vector<ObjectInstance> instances_;
   std::vector<Candidate> candidates_;
   std::vector<DrawnModel> drawn_models_;
+  std::vector<EffectWish> effect_wishes_;
   std::vector<LabelWish> wishes_;
   std::vector<Wisher> wishers_;  // who wishes[i] is of
   std::vector<std::optional<const ModelPage*>> models_found_;

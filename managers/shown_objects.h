@@ -5,6 +5,7 @@
 // Threads: the object manager's.
 #pragma once
 
+#include "managers/effects.h"
 #include "runtime/scene/label_box.h"
 #include "runtime/scene/motion.h"
 #include "runtime/scene/object_table.h"
@@ -21,7 +22,9 @@ struct ShownObject {
   Smoother smoother{};
   bool labelled = false;
   LabelSide label_side = LabelSide::kRight;
+  std::vector<TrackPoint> track{};  // where it was shown, oldest first; kept where trails are asked for
 };
+inline constexpr size_t kMostTrackPoints = 64;
 
 class ShownObjects {
  public:

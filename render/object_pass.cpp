@@ -52,7 +52,8 @@ InstanceRow RowOf(const ObjectInstance& instance, const MovedObject& object, con
   const Daylight light = DaylightAt(object.position_ecef, matrices, sun_ecef);
   InstanceRow row{};
   row.clip_from_body = glm::mat4(matrices.clip_from_ecef * ecef_from_body);
-  row.sun_body = glm::vec4(glm::vec3(glm::transpose(object.ecef_from_body) * sun_ecef), light.day);
+  row.sun_body =
+      glm::vec4(glm::vec3(glm::transpose(object.ecef_from_body) * sun_ecef), light.day * instance.look.shade);
   row.veil = glm::vec4(light.air, light.left);
   return row;
 }

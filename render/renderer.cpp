@@ -155,6 +155,7 @@ bool Renderer::HasToBeDrawn(const View& view) const {
   if (view.parameters->width_px <= 0 || view.parameters->height_px <= 0) return false;  // a minimised window
   const bool moves = view.parameters->eye_velocity_mps != glm::dvec3(0) ||
                      !view.channel->object_lists.front().instances.empty() ||
+                     !view.channel->object_lists.front().effects.empty() ||
                      view.drawn_s < view.channel->terrain_lists.front().statistics.rises_until_s ||
                      std::abs(view.parameters->time_rate) > kRateOfASunThatMoves ||
                      view.uploads_pending != view.report.uploads_pending;
@@ -254,6 +255,10 @@ Renderer::Drawn Renderer::DrawView(View& view, const ViewParameters& parameters,
     AddObjectOverlay(objects, moved, parameters, view.matrices, view.overlay);
   }
   if (parameters.sky) sky_.Draw();
+  if (view.has_objects && parameters.draw_objects) {
+    effects_.Draw(objects, parameters, view.matrices, sun_ecef,
+                  std::clamp(now_s - objects.time_s, 0.0, kLongestExtrapolation_s));
+  }
   DrawOverlay(view, parameters, now_s);
   view.target.Resolve();
   return drawn;

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "render/context.h"
+#include "render/effect_pass.h"
 #include "render/frame_recorder.h"
 #include "render/frame_target.h"
 #include "render/gl_objects.h"
@@ -103,6 +104,7 @@ class Renderer {
   SkyPass sky_;
   VolumePass volumes_;
   ObjectPass objects_;
+  EffectPass effects_;
   OverlayPass overlay_;
   GlBuffer view_block_;
   FramesInFlight in_flight_;

@@ -11,6 +11,7 @@ extern const std::string_view kTerrainVert, kTerrainFrag;
 extern const std::string_view kSkyVert, kSkyFrag;
 extern const std::string_view kModelVert, kModelFrag;
 extern const std::string_view kOverlayVert, kOverlayFrag;
+extern const std::string_view kEffectVert, kEffectFrag;
 extern const std::string_view kVolumeVert, kVolumeFrag;
 
 }  // namespace belvedere::shaders

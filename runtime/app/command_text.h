@@ -2,10 +2,10 @@
 //
 //   zoom STEPS                 look RIGHT UP (fractions of the picture)     orbit AROUND_DEG TILT_DEG
 //   fly FORWARD RIGHT UP [TURN PITCH]      goto LAT LON HEIGHT_M [HEADING PITCH]      home
-//   error PX        error *FACTOR          toggle hud|labels|objects|symbols|sky|wireframe|volumes|pages|frozen
-//   tint none|error|level|frame|image|next
-//   layer NAME|NUMBER toggle|on|off|opacity=X|gamma=X|multiplier=X|role=ROLE
-//   target next|previous                   time +SECONDS|-SECONDS           picture       quit
+//   error PX        error *FACTOR          toggle
+//   hud|labels|objects|symbols|sky|wireframe|volumes|pages|frozen|effects|trails|vectors tint
+//   none|error|level|frame|image|next layer NAME|NUMBER toggle|on|off|opacity=X|gamma=X|multiplier=X|role=ROLE target
+//   next|previous                   time +SECONDS|-SECONDS           picture       quit
 //
 // zoom and orbit act on the middle of the picture. What a mouse does (grab, pan) has no written form.
 // Threads: pure functions.

@@ -18,7 +18,7 @@ constexpr std::pair<std::string_view, std::string_view> kStockKeys[] = {
     {"Home", "home"},        {"Escape", "quit"},        {"shift+=", "zoom 1"},         {"=", "zoom 1"},
     {"-", "zoom -1"},        {"KeypadAdd", "zoom 1"},   {"KeypadSubtract", "zoom -1"}, {"[", "error *0.8"},
     {"]", "error *1.25"},    {"PageUp", "orbit 0 5"},   {"PageDown", "orbit 0 -5"},    {",", "time -600"},
-    {".", "time +600"},
+    {".", "time +600"},      {"e", "toggle effects"},   {"y", "toggle trails"},        {"v", "toggle vectors"},
 };
 
 const std::map<std::string, Key>& KeyNames() {

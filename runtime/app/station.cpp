@@ -76,7 +76,7 @@ void Station::StartReceivers(const FeedSpec& feed) {
       dis::ReceiverOptions options;
       options.network.listen = *endpoint;
       options.network.interface_address = feed.interface_address;
-      options.intake = {feed.exercise, feed.admission};
+      options.intake = {feed.exercise, feed.admission, feed.scorch_s};
       Result<std::unique_ptr<dis::Receiver>> receiver = dis::Receiver::Start(options, *objects_, clock_);
       status = receiver.status();
       if (receiver.ok()) receivers_.push_back(std::move(*receiver));

@@ -83,6 +83,11 @@ ViewSpec ReadView(SettingsTable& table) {
     if (format.ok()) view.label_format = std::make_shared<const LabelFormat>(std::move(*format));
     if (!format.ok()) table.Complain("label", fmt::format("is wrong: {}", format.message()));
   }
+  Assign(table.Boolean("effects"), view.effects);
+  Assign(table.Number("trails_s", 1, 3600), view.trails_s);
+  view.trails = table.Boolean("trails").value_or(table.Has("trails_s"));
+  Assign(table.Number("vectors_s", 1, 3600), view.vectors_s);
+  view.vectors = table.Boolean("vectors").value_or(table.Has("vectors_s"));
   Assign(table.Boolean("objects"), view.objects);
   Assign(table.Boolean("symbols"), view.symbols);
   Assign(table.Boolean("sky"), view.sky);
@@ -157,6 +162,7 @@ FeedSpec ReadFeed(SettingsTable& table) {
   for (SettingsTable& timeout : timeouts) rules.push_back(ReadTimeout(timeout));
   feed.timeouts.insert(feed.timeouts.begin(), rules.begin(), rules.end());
   Assign(table.Integer("most_entities", 1, 10'000'000), feed.most_entities);
+  Assign(table.Number("scorch_s", 0, 86'400), feed.scorch_s);
   ReadAdmission(table, feed.admission);
   table.CheckKeys();
   return feed;

@@ -39,6 +39,8 @@ struct ViewSpec {
   std::vector<std::string> layers;  // image layers in their written form (layer_text.h)
   double error_px = 2.0, texel_px = 1.25;
   std::shared_ptr<const LabelFormat> label_format;  // nullptr: the usual one
+  double trails_s = 60, vectors_s = 30;             // how far back and ahead, where they are on
+  bool effects = true, trails = false, vectors = false;
   bool hud = true, labels = true, objects = true, symbols = false, sky = true;
 };
 
@@ -57,6 +59,7 @@ struct FeedSpec {
   std::vector<TimeoutRule> timeouts = DefaultTimeouts();
   size_t most_entities = 100'000;
   dis::AdmissionOptions admission;
+  double scorch_s = 300;  // how long marks of detonations stay
 };
 
 struct StationSpec {

@@ -27,6 +27,9 @@ ViewPilot::ViewPilot(ViewId view, const WindowSpec& window, std::vector<NamedLay
       error_px_(spec_.error_px),
       hud_(spec_.hud),
       labels_(spec_.labels),
+      effects_(spec_.effects),
+      trails_(spec_.trails),
+      vectors_(spec_.vectors),
       objects_(spec_.objects),
       symbols_(spec_.symbols),
       sky_(spec_.sky) {
@@ -151,6 +154,9 @@ void ViewPilot::ApplySwitches(const Command& command) {
       case ViewSwitch::kVolumes: volumes_ = !volumes_; break;
       case ViewSwitch::kPages: pages_ = !pages_; break;
       case ViewSwitch::kFrozen: frozen_ = !frozen_; break;
+      case ViewSwitch::kEffects: effects_ = !effects_; break;
+      case ViewSwitch::kTrails: trails_ = !trails_; break;
+      case ViewSwitch::kVectors: vectors_ = !vectors_; break;
     }
   }
   if (const auto* tint = std::get_if<TintCommand>(&command)) {
@@ -237,6 +243,9 @@ ViewParameters ViewPilot::Parameters(uint64_t number, double time_s, double utc_
   view.symbols = symbols_;
   view.labels = labels_;
   view.label_format = spec_.label_format;
+  view.effects = effects_;
+  view.trails_s = trails_ ? spec_.trails_s : 0;
+  view.vectors_s = vectors_ ? spec_.vectors_s : 0;
   view.hud = hud_;
   view.sky = sky_;
   view.wireframe = wireframe_;

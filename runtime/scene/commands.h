@@ -64,7 +64,20 @@ struct ErrorBoundCommand {
 struct ScaleErrorBoundCommand {
   double factor = 1;
 };
-enum class ViewSwitch : uint8_t { kHud, kLabels, kObjects, kSymbols, kSky, kWireframe, kVolumes, kPages, kFrozen };
+enum class ViewSwitch : uint8_t {
+  kHud,
+  kLabels,
+  kObjects,
+  kSymbols,
+  kSky,
+  kWireframe,
+  kVolumes,
+  kPages,
+  kFrozen,
+  kEffects,
+  kTrails,
+  kVectors,
+};
 struct ToggleCommand {
   ViewSwitch what = ViewSwitch::kHud;
 };

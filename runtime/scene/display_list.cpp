@@ -18,6 +18,7 @@ void DisplayList::Clear() {
   indices.clear();
   terrain_draws.clear();
   instances.clear();
+  effects.clear();
   labels.clear();
   layer_pages.clear();
   statistics = {};

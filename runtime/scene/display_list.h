@@ -99,6 +99,7 @@ struct ObjectLook {
   uint8_t symbol = 0;                                 // SymbolShape
   std::array<uint8_t, 4> colour{255, 255, 255, 255};  // force colour of symbol and label
   float scale = 1;
+  float shade = 1;  // of the model's colours: darker where it is damaged
 };
 
 enum class SymbolShape : uint8_t { kNone, kAir, kGround, kSurface, kSubsurface, kOther };
@@ -114,6 +115,23 @@ struct ObjectInstance {
   uint32_t label = 0;   // index -> labels, 0 none
   uint64_t object = 0;  // ObjectId, for picking and for tests
 };
+
+// Smoke, fire, light, trails: soft shapes that face the eye, from one point to another or round about one.
+struct EffectInstance {
+  enum class Shape : uint8_t {
+    kPuff,  // lit by day and hazy far off
+    kGlow,  // light, added to what is behind it
+    kLine,  // as kPuff with a firm edge, and not lit
+    kDisc,  // flat on the ground at from_ecef, facing to_ecef
+  };
+  glm::dvec3 from_ecef{}, to_ecef{};                                                      // the same: round
+  glm::dvec3 velocity_mps{};                                                              // of both
+  float from_m = 1, to_m = 1;                                                             // radius at each
+  float least_px = 0;                                                                     // is drawn no thinner
+  std::array<uint8_t, 4> from_colour{255, 255, 255, 255}, to_colour{255, 255, 255, 255};  // straight alpha
+  Shape shape = Shape::kPuff;
+};
+inline constexpr size_t kMostEffects = 4096;  // a view
 
 // The data block of an object: lines of text, and the side on which it stands (label_box.h).
 struct ObjectLabel {
@@ -143,7 +161,8 @@ struct DisplayList {
   std::vector<uint32_t> indices;
   std::vector<TerrainDraw> terrain_draws;
   std::vector<ObjectInstance> instances;
-  std::vector<ObjectLabel> labels;  // labels[0] is empty; no two of them overlap
+  std::vector<EffectInstance> effects;  // kMostEffects at most
+  std::vector<ObjectLabel> labels;      // labels[0] is empty; no two of them overlap
 
   std::vector<LayerPages> layer_pages;
 

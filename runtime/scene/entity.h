@@ -30,8 +30,8 @@ struct EntityType {
   auto operator<=>(const EntityType&) const = default;
   std::string ToString() const;  // "1.2.225.57.1.1.0"
 
-  static constexpr uint8_t kPlatform = 1, kMunition = 2;                   // kind
-  static constexpr uint8_t kLand = 1, kAir = 2, kSurface = 3, kSpace = 5;  // domain of a platform
+  static constexpr uint8_t kPlatform = 1, kMunition = 2, kLifeForm = 3;                     // kind
+  static constexpr uint8_t kLand = 1, kAir = 2, kSurface = 3, kSubsurface = 4, kSpace = 5;  // of a platform
   bool is_ground_platform() const { return kind == kPlatform && domain == kLand; }
   bool is_air_platform() const { return kind == kPlatform && domain == kAir; }
 };

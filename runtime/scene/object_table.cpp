@@ -133,6 +133,14 @@ std::optional<ObjectRecord> ObjectTable::Find(EntityId id) const {
   return entries_[known->second].record;
 }
 
+void ObjectTable::AddEvent(const SceneEvent& event) {
+  MutexLock lock(mutex_);
+  if (events_.size() == kMostSceneEvents) events_.pop_front();
+  events_.push_back(event);
+  events_.back().number = ++events_added_;
+  changed_ = true;
+}
+
 std::vector<EntityId> ObjectTable::Ids() const {
   MutexLock lock(mutex_);
   std::vector<EntityId> ids;
@@ -291,6 +299,8 @@ std::shared_ptr<const ObjectSnapshot> ObjectTable::Build(double now_s) {
     ObjectRecord& record = snapshot->objects.emplace_back(entries_[slot].record);
     if ((record.flags & kObjectFrozen) != 0) record.kinematics.model = DeadReckoning::kStatic;
   }
+  std::erase_if(events_, [&](const SceneEvent& event) { return event.end_s <= now_s; });
+  snapshot->events.assign(events_.begin(), events_.end());
   changed_ = false;
   next_publish_s_ =
       now_s + std::max(options_.publish_interval_s, kBuildShare_sPerObject * static_cast<double>(slots_.size()));

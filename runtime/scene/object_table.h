@@ -14,10 +14,12 @@
 #include "runtime/base/mutex.h"
 #include "runtime/scene/entity.h"
 #include "runtime/scene/motion.h"
+#include "runtime/scene/scene_event.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -78,6 +80,7 @@ inline constexpr uint32_t kAppearanceDeactivated = uint32_t{1} << 23;
 
 struct ObjectSnapshot {
   std::vector<ObjectRecord> objects;  // in the order of id
+  std::vector<SceneEvent> events;     // oldest first; some may be over
   double time_s = 0;                  // when it was taken
   uint64_t number = 0;                // counts snapshots
 
@@ -136,6 +139,8 @@ class ObjectTable {
   bool Hold(EntityId id, double now_s) EXCLUDES_LOCK(mutex_);
   bool Release(EntityId id, double now_s) EXCLUDES_LOCK(mutex_);
   std::optional<ObjectRecord> Find(EntityId id) const EXCLUDES_LOCK(mutex_);
+  // Shown from its start_s to its end_s. Its number is filled in.
+  void AddEvent(const SceneEvent& event) EXCLUDES_LOCK(mutex_);
   // Of every object known now, in order.
   std::vector<EntityId> Ids() const EXCLUDES_LOCK(mutex_);
   // Drops what has timed out and publishes what has changed, if it is time for either. Writers call it after a batch.
@@ -181,6 +186,8 @@ class ObjectTable {
   double next_publish_s_ GUARDED_BY(mutex_);
   uint64_t snapshots_ GUARDED_BY(mutex_) = 0;
   uint32_t incarnations_ GUARDED_BY(mutex_) = 0;
+  std::deque<SceneEvent> events_ GUARDED_BY(mutex_);
+  uint32_t events_added_ GUARDED_BY(mutex_) = 0;
   ObjectTableCounters counters_ GUARDED_BY(mutex_);
 
   mutable Mutex published_mutex_;

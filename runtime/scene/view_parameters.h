@@ -68,6 +68,9 @@ struct ViewParameters {
   bool symbols = false;  // objects as symbols of constant size instead of models (the overview)
   bool labels = true;
   std::shared_ptr<const LabelFormat> label_format;  // nullptr: marking and flight level
+  bool effects = true;                              // smoke, fire, lights, marks on the ground
+  double trails_s = 0;                              // how far back the way of each object is drawn; 0: not
+  double vectors_s = 0;                             // how far ahead
   bool hud = true;
   bool sky = true;
   bool wireframe = false;

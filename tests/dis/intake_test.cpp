@@ -164,6 +164,45 @@ TEST(AddressRange, HoldsWhatItSays) {
   }
 }
 
+TEST_F(IntakeTest, EngagementsBecomeEvents) {
+  using Kind = SceneEvent::Kind;
+  std::vector<uint8_t> bytes(256);
+  const auto take = [&](const auto& body) { Take(std::span(bytes).first(EncodePdu({}, body, bytes))); };
+  const auto kinds = [&] {
+    std::vector<Kind> found;
+    for (const SceneEvent& event : Snapshot()->events) found.push_back(event.kind);
+    return found;
+  };
+  Fire fire;
+  fire.position_ecef = SomeEntity().position_ecef;
+  fire.velocity_mps = {800, 0, 0};
+  fire.range_m = 1600;
+  take(fire);
+  EXPECT_EQ(kinds(), (std::vector<Kind>{Kind::kMuzzleFlash, Kind::kTracer}));
+  EXPECT_NEAR(table_.Snapshot()->events[1].end_s, 12.0, 1e-9);
+  fire.munition = {1, 1, 7};  // a missile that has its own Entity States
+  take(fire);
+  EXPECT_EQ(kinds(), (std::vector<Kind>{Kind::kTracer, Kind::kMuzzleFlash}));  // the first flash is over
+  Detonation detonation;
+  detonation.position_ecef = fire.position_ecef;
+  detonation.descriptor.type = {2, 9, 225, 2, 1, 0, 0};
+  detonation.descriptor.warhead = 1000;
+  detonation.result = 3;
+  take(detonation);
+  EXPECT_EQ(kinds().back(), Kind::kScorch);
+  EXPECT_NEAR(table_.Snapshot()->events.back().end_s, 310.0, 1e-9);
+  detonation.descriptor.warhead = 0;  // a bullet
+  take(detonation);
+  EXPECT_EQ(kinds().back(), Kind::kDust);
+  Collision collision;
+  collision.issuing = SomeEntity().id;
+  take(collision);
+  EXPECT_EQ(kinds().back(), Kind::kDust);  // of an entity that nobody knows
+  Take(Encoded(SomeEntity()));
+  take(collision);
+  EXPECT_EQ(kinds().back(), Kind::kCollision);
+}
+
 TEST_F(IntakeTest, PartsAreBounded) {
   std::vector<uint8_t> bytes = Encoded(SomeEntity());
   bytes[19] = 20;

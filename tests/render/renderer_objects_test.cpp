@@ -188,4 +188,39 @@ TEST_F(Objects, CanBeHidden) {
 }
 
 }  // namespace
+TEST_F(Objects, EffectsAreBlendedWhereTheyAre) {
+  const auto draw = [&](EffectInstance::Shape shape, EffectInstance::Shape other, double height_m) {
+    DisplayList& list = stage_->channel->object_lists.back();
+    list.Clear();
+    list.number = 1;
+    for (const auto& [east_deg, one] : {std::pair{-0.004, shape}, {0.004, other}}) {
+      EffectInstance& effect = list.effects.emplace_back();
+      effect.from_ecef = effect.to_ecef = ToEcef({36.0, -118.0 + east_deg, height_m});
+      if (one == EffectInstance::Shape::kDisc) effect.to_ecef += LevelAxesAt(36.0, -118.0).up;
+      effect.from_m = effect.to_m = 150;
+      effect.from_colour = effect.to_colour = {255, 0, 0, 255};
+      effect.shape = one;
+    }
+    stage_->channel->object_lists.Publish();
+    return Draw();
+  };
+  const auto red_at = [&](const Picture& picture, int x) {
+    const uint8_t* rgb = &picture.rgb[3 * static_cast<size_t>(kHeight / 2 * kWidth + x)];
+    return std::pair<int, int>{rgb[0], rgb[1]};
+  };
+  const Picture plain = draw(EffectInstance::Shape::kPuff, EffectInstance::Shape::kPuff, -1e6);  // behind the Earth
+  const glm::dvec2 left = Projected(plain, ToEcef({36.0, -118.004, 500}));
+  const glm::dvec2 right = Projected(plain, ToEcef({36.0, -117.996, 500}));
+  const int left_x = static_cast<int>(left.x), right_x = static_cast<int>(right.x);
+  const Picture picture = draw(EffectInstance::Shape::kGlow, EffectInstance::Shape::kLine, 500);
+  EXPECT_GT(red_at(picture, left_x).first, red_at(plain, left_x).first + 20);
+  EXPECT_GE(red_at(picture, left_x).second, red_at(plain, left_x).second);  // light is added,
+  EXPECT_GT(red_at(picture, right_x).first, 150);
+  EXPECT_LT(red_at(picture, right_x).second, 40);  // a line covers
+  EXPECT_NEAR(red_at(picture, kWidth / 2).first, red_at(plain, kWidth / 2).first, 2);
+  const Picture disc = draw(EffectInstance::Shape::kDisc, EffectInstance::Shape::kPuff, 500);
+  EXPECT_LT(red_at(disc, left_x).second, red_at(plain, left_x).second / 2 + 20);
+  EXPECT_LT(red_at(disc, right_x).second, red_at(plain, right_x).second / 2 + 60);
+}
+
 }  // namespace belvedere::testing

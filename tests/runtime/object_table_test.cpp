@@ -164,6 +164,18 @@ TEST(ObjectTable, AtCapacityTheStalestGoesWhateverItsRule) {
   EXPECT_EQ(table.Ids(), (std::vector<EntityId>{{1, 1, 2}, {1, 1, 3}}));
 }
 
+TEST(ObjectTable, EventsAreBoundedAndEnd) {
+  ObjectTable table;
+  for (size_t i = 0; i < kMostSceneEvents + 10; ++i) table.AddEvent({.end_s = i % 2 == 0 ? 1.0 : 9.0});
+  table.Tick(0.5);
+  const auto all = table.Snapshot();
+  EXPECT_EQ(all->events.size(), kMostSceneEvents);
+  EXPECT_EQ(all->events.front().number, 11u);
+  table.AddEvent({.end_s = 9.0});
+  table.Tick(2.0);
+  EXPECT_EQ(table.Snapshot()->events.size(), kMostSceneEvents / 2 + 1);
+}
+
 TEST(ObjectTable, RemovedAndDeactivatedObjectsGo) {
   ObjectTable table;
   table.Put(Record(1, 0.0));
