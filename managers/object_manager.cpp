@@ -1,6 +1,7 @@
 #include "managers/object_manager.h"
 
 #include "managers/effects.h"
+#include "managers/group_selection.h"
 #include "managers/label_layout.h"
 #include "managers/list_pages.h"
 #include "managers/object_selection.h"
@@ -14,6 +15,7 @@
 #include "runtime/paging/terrain_height.h"
 #include "runtime/scene/label_format.h"
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include <algorithm>
@@ -57,11 +59,12 @@ uint64_t PackedType(const EntityType& type) {
 class ObjectManager::Worker {
  public:
   Worker(ViewId view, Paging& paging, const EntityLooks& looks, const ObjectTable& objects,
-         std::shared_ptr<ViewChannel> channel, const Clock& clock)
+         const ClusterManager& clusters, std::shared_ptr<ViewChannel> channel, const Clock& clock)
       : view_id_(view),
         paging_(paging),
         looks_(looks),
         objects_(objects),
+        clusters_(clusters),
         channel_(std::move(channel)),
         clock_(clock),
         terrain_(paging.layers.FirstOf(PageKind::kTerrain)),
@@ -100,9 +103,14 @@ class ObjectManager::Worker {
     const Geodetic eye = ToGeodetic(view.EyeAt(now_s));
     const ViewMatrices matrices = MatricesOf(view, now_s, std::max(0.0, eye.height_m));
     Clear();
+    const std::shared_ptr<const ClusterTree> tree = view.groups ? clusters_.tree() : std::make_shared<ClusterTree>();
+    groups_.Select(*tree, view, matrices, now_s);
     for (const ObjectRecord& record : snapshot.objects) {
-      if (record.visible()) Consider(record, view, matrices, now_s, pages);
+      if (!record.visible()) continue;
+      const GroupSelection::State state = groups_.StateOf(tree->LeafOf(record.slot, record.incarnation));
+      if (state == GroupSelection::State::kOpen) Consider(record, view, matrices, now_s, pages);
     }
+    for (const Cluster* group : groups_.groups()) AddGroup(*group, view, matrices, now_s - tree->time_s);
     KeepTriangleBudget();
     AddEffects(view, snapshot.events, now_s, list);
     if (view.labels) AddLabels(view, list);
@@ -150,7 +158,8 @@ class ObjectManager::Worker {
     candidates_.push_back({GroupOf(instance.position_ecef), index});
     instance.look.shade = ShadeOfDamage(record.damage());
     WishEffects(record, shown, view, matrices, index, now_s);
-    if (view.labels) WishLabel(record, look, shown, view, matrices, index);
+    if (view.frames) instance.look.frame = static_cast<uint8_t>(ForceFrame(record.force));
+    if (view.labels) WishLabel({&record, &look, index, 1}, FormatOf(view).SizeFor(record), &shown, view, matrices);
   }
 
   // Coarser models, all by the same error on the screen, until they have no more triangles than a view may have.
@@ -166,6 +175,30 @@ class ObjectManager::Worker {
       }
     }
   }
+
+  // One symbol for all of a cluster, with their number.
+  void AddGroup(const Cluster& group, const ViewParameters& view, const ViewMatrices& matrices, double since_s) {
+    const EntityLook& look = LookOf({group.key.kind, group.key.domain, 0, 0, 0, 0, 0});
+    ObjectInstance& instance = instances_.emplace_back();
+    instance.position_ecef = group.centre_ecef + since_s * group.velocity_mps;
+    instance.velocity_mps = group.velocity_mps;
+    const glm::dvec3 up = glm::normalize(instance.position_ecef);
+    const glm::dvec3 ahead = group.velocity_mps - glm::dot(group.velocity_mps, up) * up;
+    if (glm::length(ahead) > kStationary_mps) {
+      const glm::dvec3 forward = glm::normalize(ahead);
+      instance.ecef_from_body = glm::dmat3(forward, glm::cross(-up, forward), -up);
+    }
+    instance.radius_m = kTypicalRadius_m;
+    instance.look.colour = ForceColour(group.key.force);
+    instance.look.symbol = static_cast<uint8_t>(look.symbol);
+    instance.look.frame = static_cast<uint8_t>(ForceFrame(group.key.force));
+    const auto index = static_cast<uint32_t>(instances_.size() - 1);
+    candidates_.push_back({GroupOf(instance.position_ecef), index});
+    if (view.labels)
+      WishLabel({nullptr, &look, index, group.members}, SizeOf(GroupText(group.members)), nullptr, view, matrices);
+  }
+
+  static std::string GroupText(uint32_t members) { return fmt::format("\u00d7{}", members); }
 
   const EntityLook& LookOf(const EntityType& type) {
     constexpr size_t kMostTypes = 4096;
@@ -251,14 +284,16 @@ class ObjectManager::Worker {
   // ---- labels
 
   struct Wisher {
-    const ObjectRecord* record;
+    const ObjectRecord* record;  // nullptr: a group
     const EntityLook* look;
     uint32_t instance;
+    uint32_t members;
   };
 
-  void WishLabel(const ObjectRecord& record, const EntityLook& look, const ShownObject& shown,
-                 const ViewParameters& view, const ViewMatrices& matrices, uint32_t index) {
-    const ObjectInstance& instance = instances_[index];
+  // shown: what is remembered of the object; nullptr for a group, whose label is as good as shown before.
+  void WishLabel(const Wisher& wisher, LabelSize size, const ShownObject* shown, const ViewParameters& view,
+                 const ViewMatrices& matrices) {
+    const ObjectInstance& instance = instances_[wisher.instance];
     const glm::dvec4 camera = matrices.camera_from_ecef * glm::dvec4(instance.position_ecef, 1.0);
     const glm::dvec4 clip = matrices.clip_from_camera * camera;
     if (clip.w <= 0 || std::abs(clip.x) > clip.w || std::abs(clip.y) > clip.w) return;
@@ -270,11 +305,11 @@ class ObjectManager::Worker {
                       static_cast<float>((0.5 - 0.5 * clip.y / clip.w) * view.height_px)};
     wish.beside_px = BesideLabel(instance.look.model_slot >= 0 && !view.symbols, metre_px * instance.radius_m);
     wish.distance_m = static_cast<float>(-camera.z);
-    wish.size = FormatOf(view).SizeFor(record);
-    wish.shown_before = shown.labelled;
-    wish.side_before = shown.label_side;
+    wish.size = size;
+    wish.shown_before = shown == nullptr || shown->labelled;
+    wish.side_before = shown == nullptr ? LabelSide::kRight : shown->label_side;
     wishes_.push_back(wish);
-    wishers_.push_back({&record, &look, index});
+    wishers_.push_back(wisher);
   }
 
   const LabelFormat& FormatOf(const ViewParameters& view) const {
@@ -282,14 +317,20 @@ class ObjectManager::Worker {
   }
 
   void AddLabels(const ViewParameters& view, DisplayList& list) {
-    for (const Wisher& wisher : wishers_) shown_.Find(wisher.record->slot)->labelled = false;
+    for (const Wisher& wisher : wishers_) {
+      if (wisher.record != nullptr) shown_.Find(wisher.record->slot)->labelled = false;
+    }
     for (const LabelPlace& place : layout_.Lay(wishes_, view.width_px, view.height_px)) {
       const Wisher& wisher = wishers_[place.wish];
       ObjectInstance& instance = instances_[wisher.instance];
+      instance.label = static_cast<uint32_t>(list.labels.size());
+      if (wisher.record == nullptr) {
+        list.labels.push_back({GroupText(wisher.members), place.side});
+        continue;
+      }
       ShownObject& shown = *shown_.Find(wisher.record->slot);
       shown.labelled = true;
       shown.label_side = place.side;
-      instance.label = static_cast<uint32_t>(list.labels.size());
       const Geodetic at = ToGeodetic(instance.position_ecef);
       const LabelFacts facts{*wisher.record,   wisher.look->name, at.latitude_deg,
                              at.longitude_deg, at.height_m,       instance.velocity_mps};
@@ -355,6 +396,7 @@ class ObjectManager::Worker {
   Paging& paging_;
   const EntityLooks& looks_;
   const ObjectTable& objects_;
+  const ClusterManager& clusters_;
   const std::shared_ptr<ViewChannel> channel_;
   const Clock& clock_;
   const Layer* const terrain_;
@@ -362,6 +404,7 @@ class ObjectManager::Worker {
   bool published_none_ = false;
   uint64_t number_ = 0;
   ShownObjects shown_;
+  GroupSelection groups_;
   std::unordered_map<uint64_t, const EntityLook*> known_looks_;  // by type
   const LabelFormat usual_format_;
   LabelLayout layout_;
@@ -377,8 +420,8 @@ class ObjectManager::Worker {
 };
 
 ObjectManager::ObjectManager(ViewId view, Paging& paging, const EntityLooks& looks, const ObjectTable& objects,
-                             std::shared_ptr<ViewChannel> channel, const Clock& clock)
-    : worker_(std::make_unique<Worker>(view, paging, looks, objects, std::move(channel), clock)),
+                             const ClusterManager& clusters, std::shared_ptr<ViewChannel> channel, const Clock& clock)
+    : worker_(std::make_unique<Worker>(view, paging, looks, objects, clusters, std::move(channel), clock)),
       view_(view),
       paging_(paging) {}
 

@@ -67,6 +67,15 @@ std::array<uint8_t, 4> ForceColour(uint8_t force) {
   }
 }
 
+SymbolShape ForceFrame(uint8_t force) {
+  switch (force) {
+    case 1: return SymbolShape::kFrameFriend;
+    case 2: return SymbolShape::kFrameHostile;
+    case 3: return SymbolShape::kFrameNeutral;
+    default: return SymbolShape::kFrameUnknown;
+  }
+}
+
 bool MayBeSeen(const ViewMatrices& matrices, const KinematicState& state, double radius_m, double now_s) {
   const double dt_s = std::abs(now_s - state.time_s);
   double moved_m = 0;

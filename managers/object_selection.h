@@ -41,6 +41,9 @@ Pose StandOn(const Pose& pose, double ground_height_m, const glm::dvec3& ground_
 // Colour by force: friendly blue, opposing red, neutral green, others yellow.
 std::array<uint8_t, 4> ForceColour(uint8_t force);
 
+// The frame in the manner of APP-6: friendly rectangle, opposing diamond, neutral square, others quatrefoil.
+SymbolShape ForceFrame(uint8_t force);
+
 // False when the object cannot be in the picture, wherever its report lets it be dead-reckoned to by now. Cheap:
 // nothing is dead-reckoned.
 bool MayBeSeen(const ViewMatrices& matrices, const KinematicState& state, double radius_m, double now_s);

@@ -15,6 +15,27 @@ namespace {
 constexpr int kOutline_px = 2;  // room for the outline around each shape
 constexpr int kSymbolSamples = 4;
 
+// The outline with one of the same shape cut out of it: a line around it goes in and comes back where it went.
+std::vector<glm::vec2> Ring(std::vector<glm::vec2> outline) {
+  constexpr float kInner = 0.84F;
+  const size_t count = outline.size();
+  outline.push_back(outline.front());
+  for (size_t i = 0; i <= count; ++i) outline.push_back(kInner * outline[count - i]);
+  return outline;
+}
+
+std::vector<glm::vec2> Quatrefoil() {
+  constexpr int kPoints = 64;
+  std::vector<glm::vec2> outline;
+  outline.reserve(kPoints);
+  for (int i = 0; i < kPoints; ++i) {
+    const float angle = 6.2831853F * static_cast<float>(i) / kPoints;
+    const float radius = 0.72F + 0.24F * std::abs(std::cos(2.0F * angle));
+    outline.emplace_back(radius * std::sin(angle), radius * std::cos(angle));
+  }
+  return outline;
+}
+
 // Polygons in a square from -1 to 1, x right, y towards where the object is heading.
 const std::vector<glm::vec2>& Outline(SymbolShape shape) {
   static const std::vector<glm::vec2> kNothing;
@@ -23,7 +44,16 @@ const std::vector<glm::vec2>& Outline(SymbolShape shape) {
   static const std::vector<glm::vec2> kHull = {{0, 1}, {0.5F, 0.35F}, {0.5F, -0.9F}, {-0.5F, -0.9F}, {-0.5F, 0.35F}};
   static const std::vector<glm::vec2> kTrough = {{-0.8F, 0.1F}, {0.8F, 0.1F}, {0.5F, -0.7F}, {-0.5F, -0.7F}};
   static const std::vector<glm::vec2> kDiamond = {{0, 0.8F}, {0.8F, 0}, {0, -0.8F}, {-0.8F, 0}};
+  static const std::vector<glm::vec2> kFriend = Ring({{-1, 0.66F}, {1, 0.66F}, {1, -0.66F}, {-1, -0.66F}});
+  static const std::vector<glm::vec2> kHostile = Ring({{0, 1}, {1, 0}, {0, -1}, {-1, 0}});
+  static const std::vector<glm::vec2> kNeutral =
+      Ring({{-0.85F, 0.85F}, {0.85F, 0.85F}, {0.85F, -0.85F}, {-0.85F, -0.85F}});
+  static const std::vector<glm::vec2> kUnknown = Ring(Quatrefoil());
   switch (shape) {
+    case SymbolShape::kFrameFriend: return kFriend;
+    case SymbolShape::kFrameHostile: return kHostile;
+    case SymbolShape::kFrameNeutral: return kNeutral;
+    case SymbolShape::kFrameUnknown: return kUnknown;
     case SymbolShape::kNone: return kNothing;
     case SymbolShape::kAir: return kArrow;
     case SymbolShape::kGround: return kSquare;

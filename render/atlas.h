@@ -52,7 +52,7 @@ class Atlas {
 
   std::vector<uint8_t> texels_;
   std::array<AtlasShape, 256> glyphs_{};
-  std::array<AtlasShape, 6> symbols_{};
+  std::array<AtlasShape, kSymbolShapes> symbols_{};
   AtlasShape solid_;
   Status font_;
   int next_x_ = 0, next_y_ = 0, row_height_ = 0;

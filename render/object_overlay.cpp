@@ -12,6 +12,7 @@
 namespace belvedere {
 namespace {
 
+constexpr float kFrame = 1.35F, kInFrame = 0.72F;  // of the usual size: a frame, and the symbol in it
 constexpr double kPulledForward =
     0.97;  // overlays are this much nearer than their object, to stand clear of the ground
 
@@ -60,10 +61,15 @@ void AddObjectOverlay(const DisplayList& list, std::span<const MovedObject> obje
   // Farthest first, so that the nearer symbol covers the farther one.
   for (auto object = objects.rbegin(); object != objects.rend(); ++object) {
     const ObjectInstance& instance = list.instances[object->instance];
-    const auto shape = static_cast<SymbolShape>(std::min<uint8_t>(instance.look.symbol, 5));
+    const auto shape = static_cast<SymbolShape>(instance.look.symbol < kSymbolShapes ? instance.look.symbol : 0);
     if (shape == SymbolShape::kNone || DrawnAsModel(instance, view)) continue;
     const float angle = Turns(shape) ? HeadingOnScreen(*object, view) : 0.0F;
-    batch.AddSymbol(object->screen_px, depth_of(*object), shape, angle, 1.0F, instance.look.colour);
+    const bool framed = instance.look.frame != 0 && instance.look.frame < kSymbolShapes;
+    if (framed) {
+      batch.AddSymbol(object->screen_px, depth_of(*object), static_cast<SymbolShape>(instance.look.frame), 0, kFrame,
+                      instance.look.colour);
+    }
+    batch.AddSymbol(object->screen_px, depth_of(*object), shape, angle, framed ? kInFrame : 1.0F, instance.look.colour);
   }
   if (!view.labels) return;
   for (const MovedObject& object : objects) {

@@ -70,7 +70,8 @@ std::optional<Command> ParseToggle(const Words& words) {
       {"hud", ViewSwitch::kHud},         {"labels", ViewSwitch::kLabels}, {"objects", ViewSwitch::kObjects},
       {"symbols", ViewSwitch::kSymbols}, {"sky", ViewSwitch::kSky},       {"wireframe", ViewSwitch::kWireframe},
       {"volumes", ViewSwitch::kVolumes}, {"pages", ViewSwitch::kPages},   {"frozen", ViewSwitch::kFrozen},
-      {"effects", ViewSwitch::kEffects}, {"trails", ViewSwitch::kTrails}, {"vectors", ViewSwitch::kVectors}};
+      {"effects", ViewSwitch::kEffects}, {"trails", ViewSwitch::kTrails}, {"vectors", ViewSwitch::kVectors},
+      {"groups", ViewSwitch::kGroups},   {"frames", ViewSwitch::kFrames}};
   if (words.size() != 2) return std::nullopt;
   const auto found = kSwitches.find(words[1]);
   if (found == kSwitches.end()) return std::nullopt;
@@ -161,7 +162,8 @@ const std::map<std::string_view, Form>& Forms() {
       {"error",
        {"error PX or error *FACTOR", [](const Words& words, const PicturePoint&) { return ParseError(words); }}},
       {"toggle",
-       {"toggle hud, labels, objects, symbols, sky, wireframe, volumes, pages, frozen, effects, trails or vectors",
+       {"toggle hud, labels, objects, symbols, sky, wireframe, volumes, pages, frozen, effects, trails, vectors, "
+        "groups or frames",
         [](const Words& words, const PicturePoint&) { return ParseToggle(words); }}},
       {"tint",
        {"tint none, error, level, frame, image or next",

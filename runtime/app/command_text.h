@@ -3,7 +3,7 @@
 //   zoom STEPS                 look RIGHT UP (fractions of the picture)     orbit AROUND_DEG TILT_DEG
 //   fly FORWARD RIGHT UP [TURN PITCH]      goto LAT LON HEIGHT_M [HEADING PITCH]      home
 //   error PX        error *FACTOR          toggle
-//   hud|labels|objects|symbols|sky|wireframe|volumes|pages|frozen|effects|trails|vectors tint
+//   hud|labels|objects|symbols|sky|wireframe|volumes|pages|frozen|effects|trails|vectors|groups|frames tint
 //   none|error|level|frame|image|next layer NAME|NUMBER toggle|on|off|opacity=X|gamma=X|multiplier=X|role=ROLE target
 //   next|previous                   time +SECONDS|-SECONDS           picture       quit
 //

@@ -19,6 +19,8 @@ StationOptions RoomsOf(const StationSpec& spec) {
   rooms.cache_bytes = static_cast<size_t>(spec.cache_MiB) << 20;
   rooms.exaggeration = spec.exaggeration;
   rooms.feed = spec.feed;
+  rooms.importance = spec.importance;
+  rooms.watched = spec.watched;
   rooms.render = spec.render;
   return rooms;
 }

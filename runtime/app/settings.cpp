@@ -4,6 +4,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <numeric>
@@ -159,6 +160,25 @@ std::optional<std::vector<std::string>> SettingsTable::Strings(std::string_view 
   }
   std::vector<std::string> values;
   for (const toml::node& element : *array) values.push_back(element.as_string()->get());
+  return values;
+}
+
+std::optional<std::vector<double>> SettingsTable::Numbers(std::string_view key, size_t count) {
+  const toml::node* node = state_->Ask(key);
+  if (node == nullptr) return std::nullopt;
+  const toml::array* array = node->as_array();
+  std::vector<double> values;
+  if (array != nullptr) {
+    for (const toml::node& element : *array) {
+      const std::optional<double> value = element.value<double>();
+      if (!value || !std::isfinite(*value)) break;
+      values.push_back(*value);
+    }
+  }
+  if (array == nullptr || array->size() != count || values.size() != count) {
+    state_->Mistake(key, fmt::format("must be an array of {} numbers", count));
+    return std::nullopt;
+  }
   return values;
 }
 

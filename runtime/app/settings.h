@@ -26,6 +26,7 @@ class SettingsTable {
   std::optional<int64_t> Integer(std::string_view key, int64_t least, int64_t most);
   std::optional<bool> Boolean(std::string_view key);
   std::optional<std::vector<std::string>> Strings(std::string_view key);
+  std::optional<std::vector<double>> Numbers(std::string_view key, size_t count);
   std::optional<std::vector<int64_t>> Integers(std::string_view key, size_t count, int64_t least, int64_t most);
   std::optional<SettingsTable> Table(std::string_view key);
   // [[key]] tables; empty when there are none.

@@ -1,5 +1,6 @@
 #include "runtime/app/station.h"
 
+#include "runtime/app/importance_file.h"
 #include "runtime/app/settings.h"
 #include "runtime/base/heap.h"
 #include "runtime/base/log.h"
@@ -26,6 +27,7 @@ Result<std::unique_ptr<Station>> Station::Start(const StationOptions& options, c
   table.timeouts = options.feed.timeouts;
   table.capacity = options.feed.most_entities;
   station->objects_ = std::make_unique<ObjectTable>(table);
+  if (Status status = station->StartClusters(options); !status.ok()) return status;
   station->StartReceivers(options.feed);
   Result<std::unique_ptr<RenderThread>> render =
       RenderThread::Start(options.render, station->paging_->layers, clock, std::move(context));
@@ -68,6 +70,18 @@ Status Station::StartPaging(const StationOptions& options) {
   return {};
 }
 
+Status Station::StartClusters(const StationOptions& options) {
+  const std::string models = options.models.empty() ? BELVEDERE_MODELS_FOLDER : options.models;
+  ClusterOptions clusters;
+  clusters.watched = options.watched;
+  Result<ImportanceTable> table =
+      LoadImportance(options.importance.empty() ? models + "/importance.toml" : options.importance);
+  if (table.ok()) clusters.importance = std::move(*table);
+  if (!table.ok() && !options.importance.empty()) return table.status();  // a folder of models may do without
+  clusters_ = std::make_unique<ClusterManager>(*objects_, std::move(clusters), clock_);
+  return {};
+}
+
 void Station::StartReceivers(const FeedSpec& feed) {
   for (const std::string& listen : feed.listen) {
     const Result<dis::Endpoint> endpoint = dis::ParseEndpoint(listen);
@@ -96,6 +110,7 @@ Station::~Station() {
   render_.reset();
   views_.clear();
   receivers_.clear();
+  clusters_.reset();
   follower_.reset();
   servers_.reset();
 }
@@ -111,8 +126,8 @@ ViewChannel& Station::AddView(const ViewParameters& first, Presenter* presenter)
   view.channel = std::make_shared<ViewChannel>();
   view.channel->parameters.Publish(first);
   view.terrain = std::make_unique<TerrainManager>(first.view, *paging_, view.channel, image_slots_, clock_);
-  view.objects =
-      std::make_unique<ObjectManager>(first.view, *paging_, catalogue_.looks, *objects_, view.channel, clock_);
+  view.objects = std::make_unique<ObjectManager>(first.view, *paging_, catalogue_.looks, *objects_, *clusters_,
+                                                 view.channel, clock_);
   render_->AddView(first.view, view.channel, presenter);
   return *view.channel;
 }

@@ -1,7 +1,10 @@
 // Station: all the rooms, started and stopped in order.
 //
-//   start   dataset -> layers -> paging -> servers -> follower -> object table and receivers -> render thread -> views
-//   stop    views' managers -> render thread -> channels -> receivers -> follower -> servers -> paging -> dataset
+//   start   dataset -> layers -> paging -> servers -> follower -> object table, clusters and receivers -> render thread
+//   ->
+//           views
+//   stop    views' managers -> render thread -> channels -> receivers -> clusters -> follower -> servers -> paging ->
+//   dataset
 //
 // A dataset that is changed or built anew on disk is followed while the station runs (dataset_follower.h).
 //
@@ -14,6 +17,7 @@
 #pragma once
 
 #include "dis/receiver.h"
+#include "managers/cluster_manager.h"
 #include "managers/object_manager.h"
 #include "managers/terrain_manager.h"
 #include "render/render_thread.h"
@@ -39,6 +43,8 @@ struct StationOptions {
   size_t cache_bytes = size_t{512} << 20;
   double exaggeration = 1;
   FeedSpec feed;
+  std::string importance;          // file of the importance table; empty: that of the models' folder
+  std::vector<WatchArea> watched;  // what is near these matters more
   RenderOptions render;
 };
 
@@ -78,6 +84,7 @@ class Station {
 
   explicit Station(const Clock& clock) : clock_(clock) {}
   Status StartPaging(const StationOptions& options);
+  Status StartClusters(const StationOptions& options);
   void StartReceivers(const FeedSpec& feed);
 
   const Clock& clock_;
@@ -89,6 +96,7 @@ class Station {
   std::unique_ptr<ServerSet> servers_;
   std::unique_ptr<DatasetFollower> follower_;
   std::unique_ptr<ObjectTable> objects_;
+  std::unique_ptr<ClusterManager> clusters_;
   std::vector<std::unique_ptr<dis::Receiver>> receivers_;
   std::unique_ptr<RenderThread> render_;
   std::map<ViewId, View> views_;

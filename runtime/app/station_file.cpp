@@ -4,6 +4,7 @@
 #include "runtime/app/program.h"
 #include "runtime/app/settings.h"
 #include "runtime/base/iso_time.h"
+#include "runtime/earth/ellipsoid.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -71,7 +72,7 @@ ViewSpec ReadView(SettingsTable& table) {
     Assign(table.Number("span_m", kLeastSpan_m, kWidestSpan_m), view.overview.span_m);
     view.overview.latitude_deg = view.position.latitude_deg;
     view.overview.longitude_deg = view.position.longitude_deg;
-    view.symbols = true;
+    view.symbols = view.frames = true;
   }
   Assign(table.Strings("layers"), view.layers);
   Assign(table.Number("error_px", 0.1, 100), view.error_px);
@@ -84,6 +85,8 @@ ViewSpec ReadView(SettingsTable& table) {
     if (!format.ok()) table.Complain("label", fmt::format("is wrong: {}", format.message()));
   }
   Assign(table.Boolean("effects"), view.effects);
+  Assign(table.Boolean("groups"), view.groups);
+  Assign(table.Boolean("frames"), view.frames);
   Assign(table.Number("trails_s", 1, 3600), view.trails_s);
   view.trails = table.Boolean("trails").value_or(table.Has("trails_s"));
   Assign(table.Number("vectors_s", 1, 3600), view.vectors_s);
@@ -180,6 +183,17 @@ void ReadRender(SettingsTable& table, RenderOptions& render) {
   table.CheckKeys();
 }
 
+WatchArea ReadWatch(SettingsTable& table) {
+  constexpr double kLargest_m = 5e6;
+  const auto latitude = table.Number("lat", -90, 90), longitude = table.Number("lon", -180, 180);
+  const auto radius_m = table.Number("radius_m", 0, kLargest_m);
+  for (const char* key : {"lat", "lon", "radius_m"}) {
+    if (!table.Has(key)) table.Complain(key, "is missing: a watch area has lat, lon and radius_m");
+  }
+  table.CheckKeys();
+  return {ToEcef({latitude.value_or(0), longitude.value_or(0), 0}), radius_m.value_or(0)};
+}
+
 void ReadKeys(SettingsTable& table, StationSpec& station) {
   station.keys = table.AllStrings();
   KeyMap keys;
@@ -223,6 +237,8 @@ Result<StationSpec> ParseStation(std::string_view text, const std::string& name,
   Assign(root.Integer("cache_MiB", 16, 1 << 20), station.cache_MiB);
   Assign(root.Number("exaggeration", 0.1, 100), station.exaggeration);
   Assign(root.Number("frame_ms", 0, 1000), station.frame_ms);
+  if (const auto file_name = root.String("importance")) station.importance = Resolved(*file_name, folder);
+  for (SettingsTable& table : root.Tables("watch")) station.watched.push_back(ReadWatch(table));
   ReadTime(root, station);
   if (auto feed = root.Table("feed")) station.feed = ReadFeed(*feed);
   if (auto render = root.Table("render")) ReadRender(*render, station.render);

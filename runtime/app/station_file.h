@@ -11,6 +11,7 @@
 #include "runtime/app/tether.h"
 #include "runtime/base/status.h"
 #include "runtime/earth/units.h"
+#include "runtime/scene/importance.h"
 #include "runtime/scene/label_format.h"
 #include "runtime/scene/object_table.h"
 
@@ -40,7 +41,7 @@ struct ViewSpec {
   double error_px = 2.0, texel_px = 1.25;
   std::shared_ptr<const LabelFormat> label_format;  // nullptr: the usual one
   double trails_s = 60, vectors_s = 30;             // how far back and ahead, where they are on
-  bool effects = true, trails = false, vectors = false;
+  bool effects = true, trails = false, vectors = false, groups = true, frames = false;
   bool hud = true, labels = true, objects = true, symbols = false, sky = true;
 };
 
@@ -73,6 +74,8 @@ struct StationSpec {
   double time_rate = 1;         // seconds of simulated time a second; 0: it stands still
   RenderOptions render;
   FeedSpec feed;
+  std::string importance;  // file of the importance table; empty: that of the models
+  std::vector<WatchArea> watched;
   std::vector<WindowSpec> windows;
   std::vector<std::pair<std::string, std::string>> keys;  // key -> command in its written form
 };

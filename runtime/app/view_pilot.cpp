@@ -30,6 +30,8 @@ ViewPilot::ViewPilot(ViewId view, const WindowSpec& window, std::vector<NamedLay
       effects_(spec_.effects),
       trails_(spec_.trails),
       vectors_(spec_.vectors),
+      groups_(spec_.groups),
+      frames_(spec_.frames),
       objects_(spec_.objects),
       symbols_(spec_.symbols),
       sky_(spec_.sky) {
@@ -157,6 +159,8 @@ void ViewPilot::ApplySwitches(const Command& command) {
       case ViewSwitch::kEffects: effects_ = !effects_; break;
       case ViewSwitch::kTrails: trails_ = !trails_; break;
       case ViewSwitch::kVectors: vectors_ = !vectors_; break;
+      case ViewSwitch::kGroups: groups_ = !groups_; break;
+      case ViewSwitch::kFrames: frames_ = !frames_; break;
     }
   }
   if (const auto* tint = std::get_if<TintCommand>(&command)) {
@@ -244,6 +248,8 @@ ViewParameters ViewPilot::Parameters(uint64_t number, double time_s, double utc_
   view.labels = labels_;
   view.label_format = spec_.label_format;
   view.effects = effects_;
+  view.groups = groups_;
+  view.frames = frames_;
   view.trails_s = trails_ ? spec_.trails_s : 0;
   view.vectors_s = vectors_ ? spec_.vectors_s : 0;
   view.hud = hud_;

@@ -61,7 +61,7 @@ class ViewPilot {
   std::optional<glm::dvec3> held_;                            // ground that a drag took hold of
   std::optional<std::pair<PicturePoint, glm::dvec3>> pivot_;  // of the orbit that is going on
   double error_px_;
-  bool hud_, labels_, effects_, trails_, vectors_, objects_, symbols_, sky_;
+  bool hud_, labels_, effects_, trails_, vectors_, groups_, frames_, objects_, symbols_, sky_;
   bool wireframe_ = false, volumes_ = false, pages_ = false, frozen_ = false;
   GroundTint tint_ = GroundTint::kNone;
   bool changed_ = true;

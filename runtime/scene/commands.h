@@ -77,6 +77,8 @@ enum class ViewSwitch : uint8_t {
   kEffects,
   kTrails,
   kVectors,
+  kGroups,
+  kFrames,
 };
 struct ToggleCommand {
   ViewSwitch what = ViewSwitch::kHud;

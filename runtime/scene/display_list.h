@@ -97,12 +97,25 @@ struct ObjectLook {
   int32_t model_slot = -1;                            // GPU slot of the model page; -1: symbol only
   uint8_t detail = 0;                                 // level of detail of the model, 0 the finest
   uint8_t symbol = 0;                                 // SymbolShape
+  uint8_t frame = 0;                                  // SymbolShape around the symbol; none for kNone
   std::array<uint8_t, 4> colour{255, 255, 255, 255};  // force colour of symbol and label
   float scale = 1;
   float shade = 1;  // of the model's colours: darker where it is damaged
 };
 
-enum class SymbolShape : uint8_t { kNone, kAir, kGround, kSurface, kSubsurface, kOther };
+enum class SymbolShape : uint8_t {
+  kNone,
+  kAir,
+  kGround,
+  kSurface,
+  kSubsurface,
+  kOther,
+  kFrameFriend,  // frames in the manner of APP-6: rectangle, diamond, square, quatrefoil
+  kFrameHostile,
+  kFrameNeutral,
+  kFrameUnknown,
+};
+inline constexpr size_t kSymbolShapes = 10;
 
 // One moving object. The render thread moves it on from `time_s` to its own frame's time, as it does the eye.
 struct ObjectInstance {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace belvedere {
 namespace {
@@ -44,8 +45,41 @@ const ObjectRecord* ObjectSnapshot::Find(EntityId id) const {
   return at != objects.end() && at->id == id ? &*at : nullptr;
 }
 
+// Snapshots that nobody reads any more: their memory serves the next ones, which is as large.
+class ObjectTable::SnapshotPool : public std::enable_shared_from_this<SnapshotPool> {
+ public:
+  std::shared_ptr<ObjectSnapshot> Get() {
+    std::unique_ptr<ObjectSnapshot> snapshot;
+    {
+      MutexLock lock(mutex_);
+      if (!spare_.empty()) {
+        snapshot = std::move(spare_.back());
+        spare_.pop_back();
+      }
+    }
+    if (snapshot == nullptr) snapshot = std::make_unique<ObjectSnapshot>();
+    snapshot->objects.clear();
+    snapshot->events.clear();
+    return {snapshot.release(), [pool = shared_from_this()](ObjectSnapshot* done) { pool->Put(done); }};
+  }
+
+ private:
+  void Put(ObjectSnapshot* done) {
+    std::unique_ptr<ObjectSnapshot> snapshot(done);
+    MutexLock lock(mutex_);
+    if (spare_.size() < kMostSpare) spare_.push_back(std::move(snapshot));
+  }
+
+  static constexpr size_t kMostSpare = 2;
+  Mutex mutex_;
+  std::vector<std::unique_ptr<ObjectSnapshot>> spare_ GUARDED_BY(mutex_);
+};
+
 ObjectTable::ObjectTable(const Options& options)
-    : options_(options), next_publish_s_(-HUGE_VAL), published_(std::make_shared<ObjectSnapshot>()) {
+    : options_(options),
+      pool_(std::make_shared<SnapshotPool>()),
+      next_publish_s_(-HUGE_VAL),
+      published_(std::make_shared<ObjectSnapshot>()) {
   BELVEDERE_CHECK(options_.capacity > 0 && options_.capacity < kNoSlot);
   BELVEDERE_CHECK(options_.timeouts.size() <= kMostTimeoutRules);
   for (const TimeoutRule& rule : options_.timeouts) lines_.push_back({.timeout_s = rule.timeout_s});
@@ -291,7 +325,7 @@ void ObjectTable::Accept(Slot slot, const ObjectRecord& record) {
 }
 
 std::shared_ptr<const ObjectSnapshot> ObjectTable::Build(double now_s) {
-  auto snapshot = std::make_shared<ObjectSnapshot>();
+  const std::shared_ptr<ObjectSnapshot> snapshot = pool_->Get();
   snapshot->time_s = now_s;
   snapshot->number = ++snapshots_;
   snapshot->objects.reserve(slots_.size());

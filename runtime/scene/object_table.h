@@ -53,21 +53,22 @@ uint8_t PositionFlags(const glm::dvec3& ecef);
 struct ObjectRecord {
   static constexpr size_t kMaxParts = 8;  // further ones are left out
 
+  // What is looked at in every record, of every list, comes first: one line of the processor's cache.
   EntityId id;
   EntityType type;
   uint8_t force = 0;  // 1 friendly, 2 opposing, 3 neutral
   uint8_t flags = 0;  // ObjectFlags
   uint8_t part_count = 0;
-  uint32_t appearance = 0;
-  Marking marking;
-  KinematicState kinematics;
-  std::array<ArticulatedPart, kMaxParts> part_array{};
-  double received_s = 0;
   uint8_t protocol_version = 7;  // of the report, for TimeoutRule
-  uint64_t source = 0;           // who reported it: a number of the network's making, equal for one host
   uint32_t slot = 0;             // the table's number for it while it is known, under the capacity;
   uint32_t incarnation = 0;      // with this, which counts all that were ever added, for itself alone
   uint32_t report = 0;           // counts the reports of this object; changes with each
+  uint32_t appearance = 0;
+  Marking marking;
+  double received_s = 0;
+  uint64_t source = 0;  // who reported it: a number of the network's making, equal for one host
+  KinematicState kinematics;
+  std::array<ArticulatedPart, kMaxParts> part_array{};
 
   bool visible() const { return (flags & kObjectNotVisible) == 0; }
   std::span<const ArticulatedPart> parts() const { return {part_array.data(), part_count}; }
@@ -175,11 +176,13 @@ class ObjectTable {
   Slot Stalest() const REQUIRES_LOCK(mutex_);
   void Accept(Slot slot, const ObjectRecord& record) REQUIRES_LOCK(mutex_);
   std::shared_ptr<const ObjectSnapshot> Build(double now_s) REQUIRES_LOCK(mutex_);
+  class SnapshotPool;
 
   const Options options_;
   mutable Mutex mutex_;
   std::vector<Entry> entries_ GUARDED_BY(mutex_);
   std::vector<Slot> free_ GUARDED_BY(mutex_);
+  const std::shared_ptr<SnapshotPool> pool_;
   std::map<EntityId, Slot> slots_ GUARDED_BY(mutex_);
   std::vector<Line> lines_ GUARDED_BY(mutex_);
   bool changed_ GUARDED_BY(mutex_) = false;

@@ -68,6 +68,8 @@ struct ViewParameters {
   bool symbols = false;  // objects as symbols of constant size instead of models (the overview)
   bool labels = true;
   std::shared_ptr<const LabelFormat> label_format;  // nullptr: marking and flight level
+  bool groups = true;                               // many objects that are close together as one symbol
+  bool frames = false;                              // symbols in a frame whose shape says whose they are
   bool effects = true;                              // smoke, fire, lights, marks on the ground
   double trails_s = 0;                              // how far back the way of each object is drawn; 0: not
   double vectors_s = 0;                             // how far ahead

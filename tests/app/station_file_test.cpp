@@ -64,6 +64,15 @@ position = [10, -20]
 [[window]]
   [window.view]
   kind = "gods-eye"
+  label = "{marking} {speed}"
+  effects = false
+  groups = false
+  trails = true
+  vectors_s = 45
+[[watch]]
+lat = 37
+lon = -118
+radius_m = 5000
 [[window]]
   [window.view]
   kind = "overview"
@@ -95,6 +104,14 @@ position = [10, -20]
   EXPECT_EQ(station->render.overlay_slots, 800);
   ASSERT_EQ(station->keys.size(), 1U);
   ASSERT_EQ(station->windows.size(), 3U);
+  const ViewSpec& second = station->windows[1].view;
+  EXPECT_NE(second.label_format, nullptr);
+  EXPECT_FALSE(second.effects || second.groups);
+  EXPECT_TRUE(second.trails && second.vectors);  // naming how far turns it on
+  EXPECT_EQ(second.vectors_s, 45);
+  EXPECT_TRUE(station->windows[2].view.frames);
+  ASSERT_EQ(station->watched.size(), 1U);
+  EXPECT_EQ(station->watched[0].radius_m, 5000);
   const WindowSpec& one = station->windows[0];
   EXPECT_EQ(one.title, "one");
   EXPECT_EQ(one.width_px, 800);
@@ -137,6 +154,10 @@ TEST(StationFileTest, NamesWrongTypesAndRanges) {
   EXPECT_NE(Complaint("dataset = \"d\"\n" + kWindow + "[feed]\nsources = [\"10.0.0.0/40\"]\n").find("10.0.0.0/40"),
             std::string::npos);
   EXPECT_NE(Complaint("dataset = \"d\"\n" + kWindow + "[[feed.timeout]]\nversion = 7\n").find("seconds is missing"),
+            std::string::npos);
+  EXPECT_NE(Complaint("dataset = \"d\"\n" + kWindow + "label = \"{speeed}\"\n").find("\"speeed\" is no field"),
+            std::string::npos);
+  EXPECT_NE(Complaint("dataset = \"d\"\n[[watch]]\nlat = 3\n" + kWindow).find("is missing: a watch area has"),
             std::string::npos);
   EXPECT_NE(Complaint("dataset = \"d\"\nwindow = 3\n").find("must be written as [[window]] tables"), std::string::npos);
   EXPECT_NE(Complaint("dataset = \"d\"\n[keys]\nF1 = \"togle hud\"\n" + kWindow).find("did you mean toggle?"),

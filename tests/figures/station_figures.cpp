@@ -10,6 +10,8 @@
 //       20,000 Entity State PDUs a second from 5,000 entities while three views draw
 //   station_figures entities DATASET [COUNT] [SECONDS] [PICTURE.png]
 //       COUNT (10,000) aircraft in one view of 1024 x 768: what the object manager and the render thread take
+//   station_figures storm DATASET [COUNT] [SECONDS] [PICTURE.png]
+//       COUNT (100,000) entities over the Earth and 20,000 PDUs a second, three views
 //   station_figures malformed DATASET FOLDER
 //       sends every .bin file of the folder to a running station, which goes on drawing
 //   station_figures jump DATASET [JUMPS]
@@ -260,6 +262,20 @@ std::vector<ObjectRecord> Formation(size_t count) {
   return records;
 }
 
+size_t ResidentBytesOfProcess() {
+  std::ifstream status("/proc/self/statm");
+  size_t total_pages = 0, resident_pages = 0;
+  status >> total_pages >> resident_pages;
+  return resident_pages * 4096;
+}
+
+void SavePicture(Station& station, ViewId id, const std::string& path) {
+  const Result<Picture> picture = station.render().Capture(id, Renderer::Moment::kOfLastFrame).get();
+  if (!picture.ok()) Give(picture.message());
+  const Status written = WritePng(path, picture->width_px, picture->height_px, picture->rgb);
+  if (!written.ok()) Give(written.message());
+}
+
 int Entities(const std::string& dataset, size_t count, double seconds, const std::string& picture_path) {
   auto station = StartStation(dataset, 512 * kMiB, false, 0);
   const Clock& clock = Clock::System();
@@ -272,6 +288,7 @@ int Entities(const std::string& dataset, size_t count, double seconds, const std
   station->objects().Tick(clock.NowSeconds());
   ViewParameters view = ViewFrom(*station, 1, kOverTheSierra, 0, -90);
   view.eye_velocity_mps = {0.01, 0, 0};  // so that it is drawn again and again
+  view.groups = false;
   station->AddView(view, nullptr);
   Settle(*station, 1, 60);
   station->render().TakeSamples();
@@ -296,12 +313,48 @@ int Entities(const std::string& dataset, size_t count, double seconds, const std
       count, instances, PercentileOf(objects_ms, 0.5), PercentileOf(objects_ms, 0.95), frame_ms.size(),
       PercentileOf(frame_ms, 0.5), PercentileOf(frame_ms, 0.99), PercentileOf(draw_ms, 0.5), triangles);
   if (!picture_path.empty()) {
-    const Result<Picture> picture = station->render().Capture(1, Renderer::Moment::kOfParameters).get();
-    if (!picture.ok()) Give(picture.message());
-    const Status written = WritePng(picture_path, picture->width_px, picture->height_px, picture->rgb);
-    if (!written.ok()) Give(written.message());
+    SavePicture(*station, 1, picture_path);
   }
   return PercentileOf(objects_ms, 0.5) < 8 ? 0 : 1;
+}
+
+int Storm(const std::string& dataset, size_t count, double seconds, const std::string& picture_path) {
+  auto station = StartStation(dataset, 512 * kMiB, true);
+  station->AddView(ViewFrom(*station, 1, {37, -118.6, 1.2e7}, 0, -90), nullptr);
+  station->AddView(ViewFrom(*station, 2, {37, -118.6, 4e5}, 0, -60), nullptr);
+  station->AddView(ViewFrom(*station, 3, {45, 8, 3e6}, 0, -90), nullptr);
+  for (const ViewId id : {1U, 2U, 3U}) Settle(*station, id, 60);
+  dis::TrafficSenderOptions options;
+  options.to = {"127.0.0.1", kPort};
+  options.traffic.scenario = "storm";
+  options.traffic.entities = count;
+  options.traffic.rate_pdus_per_s = 20'000;
+  options.traffic.utc_at_start_s = Clock::System().UtcSeconds();
+  auto sender = dis::TrafficSender::Start(options, Clock::System());
+  if (!sender.ok()) Give(sender.message());
+  Sleep(std::max(8.0, 1.5 * static_cast<double>(count) / 20'000));  // until all are there
+  station->render().TakeSamples();
+  const size_t before = ResidentBytesOfProcess();
+  Sleep(seconds);
+  const size_t after = ResidentBytesOfProcess();
+  std::vector<double> frame_ms, objects_ms;
+  uint32_t instances = 0;
+  for (const FrameSample& sample : station->render().TakeSamples()) {
+    if (sample.view == 1) frame_ms.push_back(sample.frame_ms);
+    objects_ms.push_back(sample.objects_ms);
+    instances = std::max(instances, sample.instances);
+  }
+  if (!picture_path.empty()) SavePicture(*station, 1, picture_path);
+  const dis::ReceiverCounters counters = station->receivers().at(0)->Counters();
+  const double fps = static_cast<double>(frame_ms.size()) / seconds;
+  fmt::print(
+      "{} entities alive, {} PDUs accepted, {} lost by the kernel; three views: {:.1f} frames/s (limit 20), median "
+      "{:.1f} ms, 99 % "
+      "{:.1f} ms; lists of {} symbols and models at most, made in median {:.1f} ms; memory {} MiB, {} MiB after {:.0f} "
+      "s\n",
+      counters.objects.alive, counters.intake.accepted, counters.lost_by_kernel, fps, PercentileOf(frame_ms, 0.5),
+      PercentileOf(frame_ms, 0.99), instances, PercentileOf(objects_ms, 0.5), before / kMiB, after / kMiB, seconds);
+  return fps >= 20 ? 0 : 1;
 }
 
 int Malformed(const std::string& dataset, const std::string& folder) {
@@ -378,13 +431,6 @@ int Jump(const std::string& dataset, int jumps) {
   return *std::max_element(settled_s.begin(), settled_s.end()) < 1.0 ? 0 : 1;
 }
 
-size_t ResidentBytesOfProcess() {
-  std::ifstream status("/proc/self/statm");
-  size_t total_pages = 0, resident_pages = 0;
-  status >> total_pages >> resident_pages;
-  return resident_pages * 4096;
-}
-
 int Soak(const std::string& dataset, double minutes) {
   constexpr size_t kBudget = 256 * kMiB;
   auto station = StartStation(dataset, kBudget, false);
@@ -453,11 +499,14 @@ int Run(const std::vector<std::string>& words) {
   if (words.size() >= 2 && words[0] == "entities") {
     return Entities(words[1], static_cast<size_t>(number(2, 10'000)), number(3, 10), words.size() > 4 ? words[4] : "");
   }
+  if (words.size() >= 2 && words[0] == "storm") {
+    return Storm(words[1], static_cast<size_t>(number(2, 100'000)), number(3, 20), words.size() > 4 ? words[4] : "");
+  }
   if (words.size() >= 3 && words[0] == "malformed") return Malformed(words[1], words[2]);
   if (words.size() >= 2 && words[0] == "jump") return Jump(words[1], static_cast<int>(number(2, 20)));
   if (words.size() >= 2 && words[0] == "soak") return Soak(words[1], number(2, 20));
   fmt::print(stderr,
-             "usage: station_figures views|places|poles|feed|entities|malformed|jump|soak DATASET "
+             "usage: station_figures views|places|poles|feed|entities|storm|malformed|jump|soak DATASET "
              "[SECONDS|FOLDER|JUMPS|MINUTES]\n");
   return 2;
 }

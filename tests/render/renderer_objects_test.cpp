@@ -189,6 +189,8 @@ TEST_F(Objects, CanBeHidden) {
 
 }  // namespace
 TEST_F(Objects, EffectsAreBlendedWhereTheyAre) {
+  view_.sky = false;
+  view_.background = {0.2F, 0.2F, 0.2F};
   const auto draw = [&](EffectInstance::Shape shape, EffectInstance::Shape other, double height_m) {
     DisplayList& list = stage_->channel->object_lists.back();
     list.Clear();
@@ -198,29 +200,30 @@ TEST_F(Objects, EffectsAreBlendedWhereTheyAre) {
       effect.from_ecef = effect.to_ecef = ToEcef({36.0, -118.0 + east_deg, height_m});
       if (one == EffectInstance::Shape::kDisc) effect.to_ecef += LevelAxesAt(36.0, -118.0).up;
       effect.from_m = effect.to_m = 150;
-      effect.from_colour = effect.to_colour = {255, 0, 0, 255};
+      effect.from_colour = effect.to_colour = {0, 0, 255, 255};
       effect.shape = one;
     }
     stage_->channel->object_lists.Publish();
     return Draw();
   };
-  const auto red_at = [&](const Picture& picture, int x) {
+  const auto blue_at = [&](const Picture& picture, int x) {
     const uint8_t* rgb = &picture.rgb[3 * static_cast<size_t>(kHeight / 2 * kWidth + x)];
-    return std::pair<int, int>{rgb[0], rgb[1]};
+    return std::pair<int, int>{rgb[2], rgb[0]};
   };
-  const Picture plain = draw(EffectInstance::Shape::kPuff, EffectInstance::Shape::kPuff, -1e6);  // behind the Earth
+  Publish({});
+  const Picture plain = Draw();
   const glm::dvec2 left = Projected(plain, ToEcef({36.0, -118.004, 500}));
   const glm::dvec2 right = Projected(plain, ToEcef({36.0, -117.996, 500}));
   const int left_x = static_cast<int>(left.x), right_x = static_cast<int>(right.x);
   const Picture picture = draw(EffectInstance::Shape::kGlow, EffectInstance::Shape::kLine, 500);
-  EXPECT_GT(red_at(picture, left_x).first, red_at(plain, left_x).first + 20);
-  EXPECT_GE(red_at(picture, left_x).second, red_at(plain, left_x).second);  // light is added,
-  EXPECT_GT(red_at(picture, right_x).first, 150);
-  EXPECT_LT(red_at(picture, right_x).second, 40);  // a line covers
-  EXPECT_NEAR(red_at(picture, kWidth / 2).first, red_at(plain, kWidth / 2).first, 2);
+  EXPECT_GT(blue_at(picture, left_x).first, blue_at(plain, left_x).first + 20);
+  EXPECT_GE(blue_at(picture, left_x).second, blue_at(plain, left_x).second);  // light is added,
+  EXPECT_GT(blue_at(picture, right_x).first, 150);
+  EXPECT_LT(blue_at(picture, right_x).second, 40);  // a line covers
+  EXPECT_NEAR(blue_at(picture, kWidth / 2).first, blue_at(plain, kWidth / 2).first, 2);
   const Picture disc = draw(EffectInstance::Shape::kDisc, EffectInstance::Shape::kPuff, 500);
-  EXPECT_LT(red_at(disc, left_x).second, red_at(plain, left_x).second / 2 + 20);
-  EXPECT_LT(red_at(disc, right_x).second, red_at(plain, right_x).second / 2 + 60);
+  EXPECT_LT(blue_at(disc, left_x).second, blue_at(plain, left_x).second / 2 + 20);
+  EXPECT_LT(blue_at(disc, right_x).second, blue_at(plain, right_x).second / 2 + 60);
 }
 
 }  // namespace belvedere::testing
