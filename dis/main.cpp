@@ -40,7 +40,15 @@ void AddTraffic(CLI::App& app, Chosen& chosen, TrafficCommand& traffic) {
       ->capture_default_str();
   command->add_option("--seconds", traffic.seconds, "how long; 0: until interrupted")->check(CLI::NonNegativeNumber);
   command->add_option("--seed", options.seed, "the same seed sends the same bytes")->capture_default_str();
-  command->add_option("--scenario", options.scenario, "sierra or storm")->capture_default_str();
+  command->add_option("--scenario", options.scenario, "sierra, storm, airways, convoy or dogfight")
+      ->capture_default_str();
+  command->add_option("--flights", options.flights,
+                      "recorded flights (JSON of ADS-B, may be gzipped) instead of a scenario");
+  command->add_option("--speed", options.speed, "recorded flights so many times as fast, up to 720")
+      ->capture_default_str();
+  command->add_option("--from", options.flights_from_s, "seconds into the recording, by its own time")
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--application", options.application, "of the entities' ids")->capture_default_str();
   command->add_option("--exercise", options.exercise, "exercise number")->capture_default_str();
   command->add_option("--version-of-dis", options.version, "protocol version")
       ->check(CLI::Range(5, 7))

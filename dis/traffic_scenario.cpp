@@ -1,11 +1,17 @@
 // The vehicles of each scenario; docs/dis.md has the table.
 #include "dis/traffic_vehicle.h"
 
+#include "runtime/earth/ellipsoid.h"
+
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <memory>
+#include <utility>
 
 namespace belvedere::dis {
 namespace {
@@ -29,7 +35,7 @@ class Random {
   uint64_t state_;
 };
 
-constexpr uint8_t kFriendly = 1, kNeutral = 3;
+constexpr uint8_t kFriendly = 1, kOpposing = 2, kNeutral = 3;
 constexpr uint16_t kUnitedStates = 225;
 constexpr uint32_t kPowerPlantOn = uint32_t{1} << 22;
 constexpr uint32_t kAircraftLights = uint32_t{3} << 13 | kPowerPlantOn;  // navigation and anti-collision
@@ -86,7 +92,7 @@ Vehicle Airliner(Random& random, Course course, double lowest_m) {
   SetSpeedAndSize(course, random.Between(190.0, 245.0), random.Between(30e3, 110e3), random.Between(11e3, 16e3));
   course.swing_m = random.Below(3) == 0 ? 250.0 : 0.0;
   course.height_m = random.Between(lowest_m + course.swing_m, 12000.0 - course.swing_m);
-  Vehicle vehicle{Air(57, static_cast<uint8_t>(1 + random.Below(3)), 0), kNeutral, kAircraftLights, {}, {}, course};
+  Vehicle vehicle{Air(57, static_cast<uint8_t>(1 + random.Below(3)), 0), kNeutral, kAircraftLights, {}, {}, course, {}};
   vehicle.model = DeadReckoning::kRvw;
   const size_t line = random.Below(kLines.size());
   vehicle.marking = Marking::Sanitise(fmt::format("{}{}", kLines[line], 100 + random.Below(1900)));
@@ -104,7 +110,7 @@ Vehicle LightAircraft(Random& random) {
                     : region == 1 ? random.Between(2400.0, 3200.0)
                                   : random.Between(3200.0, 4200.0);
   course.swing_m = random.Between(0.0, 60.0);
-  Vehicle vehicle{Air(85, static_cast<uint8_t>(1 + random.Below(2)), 0), kNeutral, kAircraftLights, {}, {}, course};
+  Vehicle vehicle{Air(85, static_cast<uint8_t>(1 + random.Below(2)), 0), kNeutral, kAircraftLights, {}, {}, course, {}};
   vehicle.model = DeadReckoning::kFpw;
   const char letter = static_cast<char>('A' + random.Below(26));
   vehicle.marking = Marking::Sanitise(fmt::format("N{}{}K", 100 + random.Below(9900), letter));
@@ -119,7 +125,7 @@ Vehicle Helicopter(Random& random) {
   course.height_m = mono ? random.Between(2350.0, 2900.0) : random.Between(1700.0, 2200.0);
   course.swing_m = random.Between(0.0, 40.0);
   const bool rescue = random.Below(2) == 0;
-  Vehicle vehicle{Air(21, 1, 0), rescue ? kNeutral : kFriendly, kAircraftLights, {}, {}, course};
+  Vehicle vehicle{Air(21, 1, 0), rescue ? kNeutral : kFriendly, kAircraftLights, {}, {}, course, {}};
   vehicle.model = DeadReckoning::kRvw;
   vehicle.marking = Marking::Sanitise(fmt::format("{} {}", rescue ? "RESCUE" : "HUEY", 1 + random.Below(99)));
   return vehicle;
@@ -132,7 +138,7 @@ Vehicle Fighter(Random& random, Course course, bool valley, double lowest_m) {
     SetSpeedAndSize(course, random.Between(180.0, 200.0), random.Between(10e3, 20e3), 3500.0);
     course.height_m = random.Between(3000.0, 3600.0);
   }
-  Vehicle vehicle{Air(1, 3, 3), kFriendly, kAircraftLights, {}, {}, course};
+  Vehicle vehicle{Air(1, 3, 3), kFriendly, kAircraftLights, {}, {}, course, {}};
   vehicle.model = DeadReckoning::kRvb;
   vehicle.marking = Marking::Sanitise(fmt::format("VIPER {}", 1 + random.Below(99)));
   return vehicle;
@@ -145,15 +151,15 @@ Vehicle GroundVehicle(Random& random) {
   Vehicle vehicle;
   const size_t kind = random.Below(10);
   if (kind < 5) {
-    vehicle = {Land(81, 1, 0), kNeutral, kHeadLights, {}, DeadReckoning::kFpw, {}};
+    vehicle = {Land(81, 1, 0), kNeutral, kHeadLights, {}, DeadReckoning::kFpw, {}, {}};
     vehicle.marking = Marking::Sanitise(fmt::format("CAR {}", 100 + random.Below(900)));
     course.speed_mps = random.Between(18.0, 30.0);
   } else if (kind < 8) {
-    vehicle = {Land(83, 1, 0), kNeutral, kHeadLights, {}, DeadReckoning::kRvw, {}};
+    vehicle = {Land(83, 1, 0), kNeutral, kHeadLights, {}, DeadReckoning::kRvw, {}, {}};
     vehicle.marking = Marking::Sanitise(fmt::format("TRUCK {}", 100 + random.Below(900)));
     course.speed_mps = random.Between(14.0, 24.0);
   } else {
-    vehicle = {Land(1, 1, 3), kFriendly, kPowerPlantOn, {}, DeadReckoning::kFpw, {}};
+    vehicle = {Land(1, 1, 3), kFriendly, kPowerPlantOn, {}, DeadReckoning::kFpw, {}, {}};
     vehicle.marking = Marking::Sanitise(fmt::format("ARMOR {}", 1 + random.Below(99)));
     course.speed_mps = random.Between(6.0, 12.0);
   }
@@ -181,13 +187,113 @@ Vehicle StormAircraft(Random& random, size_t index) {
   return index % 4 == 3 ? Fighter(random, course, false, kOverEverest_m) : Airliner(random, course, kOverEverest_m);
 }
 
+// ---- airways
+
+struct Airport {
+  double latitude_deg, longitude_deg;
+};
+// Zurich, Geneva, Munich, Milan, London, Paris, Frankfurt, Amsterdam, Madrid, Rome, Vienna, Copenhagen, Istanbul, New
+// York, Chicago, Los Angeles, San Francisco, Denver, Dallas, Atlanta, Tokyo, Singapore, Dubai, Sydney, Sao Paulo.
+constexpr std::array<Airport, 25> kAirports = {
+    {{47.458, 8.548},    {46.238, 6.109},    {48.354, 11.786},   {45.630, 8.723},    {51.470, -0.454},
+     {49.010, 2.548},    {50.038, 8.562},    {52.309, 4.764},    {40.472, -3.561},   {41.800, 12.239},
+     {48.110, 16.570},   {55.618, 12.656},   {41.262, 28.727},   {40.640, -73.778},  {41.978, -87.905},
+     {33.942, -118.408}, {37.619, -122.375}, {39.861, -104.673}, {32.897, -97.038},  {33.637, -84.428},
+     {35.772, 140.393},  {1.364, 103.992},   {25.253, 55.366},   {-33.946, 151.177}, {-23.432, -46.470}}};
+
+// There along the great circle and back a little beside it, climbing and sinking over the first and last 200 km.
+std::shared_ptr<const FlightTrack> Airway(Random& random, const Airport& from, const Airport& to, double speed_mps) {
+  constexpr double kStep_m = 15e3, kClimb_m = 200e3, kBeside_m = 9e3;
+  const double cruise_m = 8800 + 300 * static_cast<double>(random.Below(12));
+  const glm::dvec3 a = UpAt(from.latitude_deg, from.longitude_deg), b = UpAt(to.latitude_deg, to.longitude_deg);
+  const double angle = std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0));
+  const double length_m = angle * kEquatorialRadius_m;
+  const auto steps = std::max<size_t>(4, static_cast<size_t>(length_m / kStep_m));
+  const glm::dvec3 aside = glm::normalize(glm::cross(a, b)) * (kBeside_m / kEquatorialRadius_m);
+  std::vector<TrackPlace> places;
+  double time_s = -random.Between(0.0, 2.0 * length_m / speed_mps);
+  for (const bool back : {false, true}) {
+    for (size_t i = 0; i <= steps; ++i) {
+      const double share = static_cast<double>(back ? steps - i : i) / static_cast<double>(steps);
+      glm::dvec3 up = (std::sin((1 - share) * angle) * a + std::sin(share * angle) * b) / std::sin(angle);
+      if (back) up = glm::normalize(up + aside);
+      const double end_m = length_m * std::min(share, 1 - share);
+      Geodetic place = ToGeodetic(up * kEquatorialRadius_m);
+      place.height_m = std::max(1500.0, cruise_m * std::min(1.0, end_m / kClimb_m));
+      const glm::dvec3 here = ToEcef(place);
+      if (!places.empty()) time_s += std::max(glm::distance(here, places.back().position_ecef), 100.0) / speed_mps;
+      places.push_back({time_s, here});
+    }
+  }
+  places.push_back({time_s + kBeside_m / speed_mps, places.front().position_ecef});
+  return std::make_shared<const FlightTrack>(std::move(places), true);
+}
+
+Vehicle AirwayAircraft(Random& random) {
+  const size_t from = random.Below(kAirports.size());
+  const size_t to = (from + 1 + random.Below(kAirports.size() - 1)) % kAirports.size();
+  Vehicle vehicle = Airliner(random, {}, 9000);
+  vehicle.track = Airway(random, kAirports[from], kAirports[to], random.Between(220.0, 250.0));
+  return vehicle;
+}
+
+// ---- convoy: one road for all, one behind the other
+
+Vehicle ConvoyVehicle(size_t index) {
+  constexpr double kSpacing_m = 45;
+  Course course;
+  course.latitude_deg = 36.98;
+  course.longitude_deg = -118.225;
+  course.heading_deg = -14;
+  course.speed_mps = 12;
+  course.leg_m = 40e3;
+  course.radius_m = 80;
+  course.height_m = 1200;
+  course.banks = false;
+  course.phase_m = 20e3 - kSpacing_m * static_cast<double>(index);
+  const bool tank = index % 10 < 3;
+  Vehicle vehicle{tank ? Land(1, 1, 3) : Land(83, 1, 0), kFriendly, kHeadLights | uint32_t{1} << 7, {}, {}, course, {}};
+  vehicle.model = DeadReckoning::kFpw;
+  vehicle.marking = Marking::Sanitise(fmt::format("{} {}", tank ? "LANCE" : "SUPPLY", index + 1));
+  return vehicle;
+}
+
+// ---- dogfight: pairs on one circle, the second behind the first
+
+Vehicle DogfightAircraft(Random& random, size_t index, std::vector<Course>& circles) {
+  constexpr double kBehind_m = 900;
+  const size_t pair = index / 2;
+  if (circles.size() <= pair) {
+    Course course = Within(random, 36.7, 37.4, -118.4, -118.0);
+    SetSpeedAndSize(course, random.Between(180.0, 210.0), random.Between(1e3, 4e3), random.Between(2200.0, 3200.0));
+    course.height_m = random.Between(5200.0, 7500.0);
+    course.swing_m = 300;
+    circles.push_back(course);
+  }
+  Course course = circles[pair];
+  const bool hunter = index % 2 == 0;
+  if (hunter) course.phase_m -= kBehind_m;
+  Vehicle vehicle{hunter ? Air(1, 3, 3) : EntityType{1, 2, 222, 1, 1, 0, 0},
+                  hunter ? kFriendly : kOpposing,
+                  kAircraftLights | uint32_t{1} << 16,
+                  {},
+                  {},
+                  course,
+                  {}};
+  vehicle.model = DeadReckoning::kRvb;
+  vehicle.marking = Marking::Sanitise(fmt::format("{} {}", hunter ? "VIPER" : "BANDIT", pair + 1));
+  return vehicle;
+}
+
 }  // namespace
 
 Result<std::vector<Vehicle>> MakeVehicles(std::string_view scenario, size_t count, uint64_t seed) {
-  const bool sierra = scenario == "sierra";
-  if (!sierra && scenario != "storm") {
-    return Status::Error("scenario '{}' is not known; there are 'sierra' and 'storm'", scenario);
+  constexpr std::array<std::string_view, 5> kScenarios = {"sierra", "storm", "airways", "convoy", "dogfight"};
+  const auto* const known = std::find(kScenarios.begin(), kScenarios.end(), scenario);
+  if (known == kScenarios.end()) {
+    return Status::Error("scenario '{}' is not known; there are {}", scenario, fmt::join(kScenarios, ", "));
   }
+  const bool sierra = scenario == "sierra";
   if (count == 0 || count > kMostVehicles) {
     return Status::Error("{} entities: the number must be from 1 to {}", count, kMostVehicles);
   }
@@ -195,9 +301,13 @@ Result<std::vector<Vehicle>> MakeVehicles(std::string_view scenario, size_t coun
   Random random(seed);
   std::vector<Vehicle> vehicles;
   vehicles.reserve(count);
+  std::vector<Course> circles;
   for (size_t i = 0; i < count; ++i) {
-    const bool drives = i >= count - ground;
-    vehicles.push_back(drives ? GroundVehicle(random) : sierra ? SierraAircraft(random, i) : StormAircraft(random, i));
+    if (sierra) vehicles.push_back(i >= count - ground ? GroundVehicle(random) : SierraAircraft(random, i));
+    if (scenario == "storm") vehicles.push_back(StormAircraft(random, i));
+    if (scenario == "airways") vehicles.push_back(AirwayAircraft(random));
+    if (scenario == "convoy") vehicles.push_back(ConvoyVehicle(i));
+    if (scenario == "dogfight") vehicles.push_back(DogfightAircraft(random, i, circles));
   }
   return vehicles;
 }

@@ -44,6 +44,10 @@ void TrafficSender::Run() {
     const std::span<const uint8_t> due = stream_.Advance(clock_.NowSeconds() - start_s_);
     Status status = sender_->SendMany(due, kEntityStateBytes);
     sent_ += due.size() / kEntityStateBytes;
+    for (const std::vector<uint8_t>& datagram : stream_.Engagements()) {
+      if (status.ok()) status = sender_->Send(datagram);
+      ++sent_;
+    }
     if (status.ok()) continue;
     LogError("traffic stops: {}", status.message());
     MutexLock lock(mutex_);

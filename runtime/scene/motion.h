@@ -67,7 +67,7 @@ struct KinematicState {
 };
 
 // Limits beyond which a report is taken to be nonsense; ClampMotion brings it within and says whether it had to.
-inline constexpr double kMaxSpeed_mps = 50e3;
+inline constexpr double kMaxSpeed_mps = 250e3;  // an airliner recorded and sent 720 times as fast
 inline constexpr double kMaxAcceleration_mps2 = 10e3;
 inline constexpr double kMaxAngularSpeed_radps = 100.0;
 bool ClampMotion(KinematicState& state);

@@ -1,3 +1,4 @@
+#include "dis/adsb.h"
 #include "dis/intake.h"
 #include "dis/traffic_stream.h"
 
@@ -5,7 +6,12 @@
 #include "runtime/earth/ellipsoid.h"
 #include "tests/dis/fixtures.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <fstream>
+
+#include <filesystem>
 
 #include <algorithm>
 #include <cmath>
@@ -49,7 +55,7 @@ TEST(Traffic, SierraFliesOverTheMountainsAndDrivesInTheValley) {
     models.insert(static_cast<uint8_t>(vehicle.model));
     EXPECT_FALSE(vehicle.marking.empty());
     for (double t = 0; t < 1000; t += 50) {
-      const Geodetic at = ToGeodetic(PositionOn(vehicle.course, t));
+      const Geodetic at = ToGeodetic(PositionOf(vehicle, t));
       if (vehicle.type.is_ground_platform()) {
         ASSERT_GT(at.latitude_deg, 36.6);
         ASSERT_LT(at.latitude_deg, 37.4);
@@ -81,14 +87,14 @@ TEST(Traffic, RatesAreTheSlopesOfTheTruth) {
   const auto vehicles = MakeVehicles("sierra", 40, 3);
   for (const Vehicle& vehicle : *vehicles) {
     for (double t = 3.0; t < 600.0; t += 31.7) {
-      const TrueState state = TrueStateOf(vehicle.course, t);
+      const TrueState state = TrueStateOf(vehicle, t);
       EXPECT_NEAR(glm::length(state.pose.velocity_ecef_mps) / vehicle.course.speed_mps, 1.0, 0.06);
       EXPECT_NEAR(glm::dot(state.pose.ecef_from_body[0], glm::normalize(state.pose.velocity_ecef_mps)), 1.0, 1e-9);
       const Geodetic at = ToGeodetic(state.pose.position_ecef);
       EXPECT_LT(glm::dot(state.pose.ecef_from_body[2], UpAt(at.latitude_deg, at.longitude_deg)), -0.5);  // belly down
       // A second on, the report is still within what roll-in and the straight between turns allow.
-      const KinematicState report = Report(vehicle.course, vehicle.model, t);
-      const Pose believed = PoseAt(report, t + 0.2), truth = TruePose(vehicle.course, t + 0.2);
+      const KinematicState report = Report(vehicle, t);
+      const Pose believed = PoseAt(report, t + 0.2), truth = TruePose(vehicle, t + 0.2);
       EXPECT_LT(glm::length(believed.position_ecef - truth.position_ecef), 0.3);
       EXPECT_LT(glm::length(believed.velocity_ecef_mps - truth.velocity_ecef_mps), 3.0);
     }
@@ -119,7 +125,7 @@ TEST(Traffic, ReceiversNeverBelieveAnythingFurtherOffThanTheThresholds) {
     }
     for (const auto& [entity, motion] : believed) {
       const Vehicle& vehicle = stream->vehicles()[entity - size_t{1}];
-      const glm::dvec3 truth = PositionOn(vehicle.course, t);
+      const glm::dvec3 truth = PositionOf(vehicle, t);
       // A threshold, and what can be added to it between two looks.
       ASSERT_LT(glm::length(PoseAt(motion, t).position_ecef - truth), 1.5) << vehicle.marking.view() << " at " << t;
     }
@@ -149,6 +155,116 @@ TEST(Traffic, ASenderStartsAndStops) {
   (*sender)->Stop();
   EXPECT_TRUE((*sender)->status().ok());
   EXPECT_FALSE(TrafficSender::Start({.to = {"not numeric", 1}}, Clock::System()).ok());
+}
+
+// Writes rows of one flight a second apart, of which some are no good, as text or gzipped.
+std::filesystem::path WriteFlight(const std::string& name, const std::string& rows) {
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
+  std::ofstream(path) << '[' << rows << ']';
+  return path;
+}
+
+std::string FlightRows(int count) {
+  std::string rows;
+  for (int i = 0; i < count; ++i) {
+    rows += fmt::format(
+        "{}{{\"timestamp\": {}, \"icao24\": \"abc\", \"callsign\": \"SWR12\", \"latitude\": {}, \"longitude\": 8.5, "
+        "\"altitude\": {}, \"other\": [1, {{\"deep\": null}}]}}",
+        i == 0 ? "" : ",", 1'533'099'600'000 + 10'000 * i, 47.0 + 0.02 * i, 30'000 + 25 * (i % 2));
+  }
+  return rows;
+}
+
+TEST(RecordedFlights, AreFlownAsTheyWere) {
+  const auto path = WriteFlight("flight.json", FlightRows(60));
+  const auto flights = ReadFlights({path.string()}, 10);
+  ASSERT_TRUE(flights.ok()) << flights.message();
+  ASSERT_EQ(flights->size(), 1u);
+  const Vehicle& flight = flights->front();
+  EXPECT_EQ(flight.marking.view(), "SWR12");
+  EXPECT_EQ(flight.type.category, 57);
+  EXPECT_TRUE(IsThere(flight, 0));
+  EXPECT_TRUE(IsThere(flight, 59));
+  EXPECT_FALSE(IsThere(flight, 60));  // 590 s, ten times as fast
+  const Geodetic middle = ToGeodetic(PositionOf(flight, 30.5));
+  EXPECT_NEAR(middle.latitude_deg, 47.0 + 0.02 * 30.5, 1e-4);
+  EXPECT_NEAR(middle.height_m, 30'012 * 0.3048, 4);
+  const double speed_mps = glm::length(TruePose(flight, 30.5).velocity_ecef_mps);
+  EXPECT_NEAR(speed_mps, 10 * 0.02 * 111'200 / 10, 30);
+  std::filesystem::remove(path);
+}
+
+TEST(RecordedFlights, WhatIsNoFlightIsNamed) {
+  const auto complaint = [](const std::filesystem::path& path) {
+    const auto flights = ReadFlights({path.string()}, 1);
+    EXPECT_FALSE(flights.ok());
+    EXPECT_NE(flights.message().find(path.string()), std::string::npos);
+    return flights.message();
+  };
+  EXPECT_NE(complaint("/nowhere/flights.json").find("cannot open"), std::string::npos);
+  EXPECT_NE(complaint(WriteFlight("text.json", "no json")).find("is not the JSON"), std::string::npos);
+  EXPECT_NE(complaint(WriteFlight("empty.json", "")).find("no row has"), std::string::npos);
+  EXPECT_NE(complaint(WriteFlight("short.json", FlightRows(2))).find("no flight of"), std::string::npos);
+  const auto bad = WriteFlight(
+      "places.json", FlightRows(20) +
+                         ",{\"timestamp\": 1533099605000, \"icao24\": \"abc\", "
+                         "\"callsign\": \"SWR12\", \"latitude\": -47, \"longitude\": 8.5, \"altitude\": 30000}");
+  const auto flights = ReadFlights({bad.string()}, 1);
+  ASSERT_TRUE(flights.ok());
+  for (double t = 0; t < 190; t += 1) EXPECT_GT(ToGeodetic(PositionOf(flights->front(), t)).latitude_deg, 46.9) << t;
+}
+
+TEST(RecordedFlights, AnEntityGoesWhenItsFlightIsOver) {
+  TrafficOptions options;
+  options.flights = {WriteFlight("over.json", FlightRows(30)).string()};
+  options.speed = 29;  // 10 s
+  auto stream = TrafficStream::Make(options);
+  ASSERT_TRUE(stream.ok()) << stream.message();
+  ObjectTable table;
+  Intake intake(table);
+  size_t most = 0;
+  for (double now_s = 0; now_s < 11; now_s += 0.05) {
+    const std::span<const uint8_t> bytes = stream->Advance(now_s);
+    for (size_t at = 0; at < bytes.size(); at += kEntityStateBytes) {
+      intake.Take(bytes.subspan(at, kEntityStateBytes), {now_s, 1e9 + now_s, {}});
+    }
+    most = std::max(most, table.Ids().size());
+  }
+  EXPECT_EQ(most, 1u);
+  EXPECT_TRUE(table.Ids().empty());
+  EXPECT_EQ(intake.counters().accepted, intake.counters().received);
+}
+
+TEST(TrafficStream, EveryScenarioMovesAsItSays) {
+  for (const char* scenario : {"airways", "convoy", "dogfight"}) {
+    TrafficOptions options;
+    options.scenario = scenario;
+    options.entities = 20;
+    auto stream = TrafficStream::Make(options), again = TrafficStream::Make(options);
+    ASSERT_TRUE(stream.ok()) << stream.message();
+    size_t engagements = 0;
+    for (double now_s = 0; now_s < 20; now_s += 0.1) {
+      const auto bytes = stream->Advance(now_s), same = again->Advance(now_s);
+      EXPECT_TRUE(std::ranges::equal(bytes, same));
+      for (const std::vector<uint8_t>& datagram : stream->Engagements()) {
+        const auto pdus = ReadAll(datagram);
+        ASSERT_EQ(pdus.size(), 1u);
+        EXPECT_EQ(pdus[0].verdict, Verdict::kDecoded);
+        ++engagements;
+      }
+    }
+    EXPECT_EQ(engagements > 0, std::string(scenario) == "dogfight");
+    for (const Vehicle& vehicle : stream->vehicles()) {
+      const Pose pose = TruePose(vehicle, 100);
+      const double speed_mps = glm::length(pose.velocity_ecef_mps), height_m = ToGeodetic(pose.position_ecef).height_m;
+      EXPECT_GT(speed_mps, 5) << scenario;
+      EXPECT_LT(speed_mps, 400) << scenario;
+      EXPECT_GT(height_m, 1000) << scenario;
+      EXPECT_LT(height_m, 13'500) << scenario;
+      EXPECT_GT(glm::dot(pose.ecef_from_body[0], pose.velocity_ecef_mps), 0.9 * speed_mps) << scenario;
+    }
+  }
+  EXPECT_NE(MakeVehicles("circus", 3, 1).message().find("sierra, storm, airways"), std::string::npos);
 }
 
 TEST(TrafficStream, AfterAnOutageThePictureIsWholeWithinAHeartbeat) {
