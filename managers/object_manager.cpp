@@ -1,7 +1,9 @@
 #include "managers/object_manager.h"
 
 #include "managers/effects.h"
+#include "managers/footing.h"
 #include "managers/group_selection.h"
+#include "managers/joints.h"
 #include "managers/label_layout.h"
 #include "managers/list_pages.h"
 #include "managers/object_selection.h"
@@ -140,7 +142,7 @@ class ObjectManager::Worker {
 
     ShownObject& shown = shown_.Show(record, number_);
     Pose pose = shown.smoother.Show(record.kinematics, path, record.report, now_s);
-    if (record.type.is_ground_platform() && terrain_ != nullptr) pose = Stand(pose, ToGeodetic(pose.position_ecef));
+    pose = Stand(pose, FootingOf(record.type), view, shown, now_s);
 
     ObjectInstance& instance = instances_.emplace_back();
     instance.position_ecef = pose.position_ecef;
@@ -148,6 +150,10 @@ class ObjectManager::Worker {
     instance.ecef_from_body = pose.ecef_from_body;
     if (ModelRotates(record.kinematics.model))
       instance.angular_velocity_body = record.kinematics.angular_velocity_radps;
+    instance.ecef_from_body = PostureOf(record, instance.ecef_from_body);
+    const JointsOf joints = JointsAt(record, now_s);
+    instance.joints = joints.pose;
+    instance.spin_radps = joints.spin_radps;
     instance.radius_m = radius_m;
     instance.look.colour = ForceColour(record.force);
     instance.look.symbol = static_cast<uint8_t>(look.symbol);
@@ -356,10 +362,19 @@ class ObjectManager::Worker {
     instance.look.symbol = static_cast<uint8_t>(SymbolShape::kNone);
   }
 
-  Pose Stand(const Pose& pose, const Geodetic& position) const {
-    const std::optional<GroundPoint> ground =
-        GroundUnder(paging_, terrain_->type, position.latitude_deg, position.longitude_deg);
-    return ground ? StandOn(pose, ground->height_m, ground->normal_ecef) : pose;
+  Pose Stand(const Pose& pose, Footing footing, const ViewParameters& view, ShownObject& shown, double now_s) const {
+    if (footing == Footing::kNone) return pose;
+    const Geodetic position = ToGeodetic(pose.position_ecef);
+    if (footing == Footing::kSea) {
+      if (!view.on_sea) return pose;
+      const double sea_m = view.exaggeration * SeaHeight(position.latitude_deg, position.longitude_deg);
+      return StandOn(pose, sea_m, UpAt(position.latitude_deg, position.longitude_deg));
+    }
+    if (!view.on_ground || terrain_ == nullptr) return pose;
+    const auto ground = GroundUnder(paging_, terrain_->type, position.latitude_deg, position.longitude_deg);
+    if (!ground) return pose;
+    const GroundPoint standing = shown.ground.Show(*ground, now_s);
+    return StandOn(pose, standing.height_m, standing.normal_ecef);
   }
 
   // Instances, grouped by place; one culling volume a group.

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "managers/effects.h"
+#include "managers/footing.h"
 #include "runtime/scene/label_box.h"
 #include "runtime/scene/motion.h"
 #include "runtime/scene/object_table.h"
@@ -20,6 +21,7 @@ struct ShownObject {
   uint32_t incarnation = 0;
   uint64_t list = 0;  // the last that showed it
   Smoother smoother{};
+  GroundBlend ground{};
   bool labelled = false;
   LabelSide label_side = LabelSide::kRight;
   std::vector<TrackPoint> track{};  // where it was shown, oldest first; kept where trails are asked for

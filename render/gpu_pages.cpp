@@ -97,6 +97,7 @@ void GpuPages::CopyModel(const ModelPage& page, int slot) {
   model.vertices = GlBuffer::Make();
   model.indices = GlBuffer::Make();
   model.details = page.details;
+  model.pivots = page.pivots;
   const size_t vertex_bytes = page.vertices.size() * sizeof(ModelVertex);
   const size_t index_bytes = page.indices.size() * sizeof(uint32_t);
   glNamedBufferData(model.vertices.get(), static_cast<GLsizeiptr>(vertex_bytes), page.vertices.data(), GL_STATIC_DRAW);

@@ -28,6 +28,7 @@ struct GpuModel {
   GlBuffer vertices;  // ModelVertex
   GlBuffer indices;   // uint32
   std::vector<ModelPage::Detail> details;
+  std::array<glm::vec3, kModelJoints> pivots{};
 };
 
 class GpuPages {

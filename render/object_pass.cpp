@@ -6,6 +6,7 @@
 #include <glm/matrix.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <tuple>
@@ -18,8 +19,10 @@ struct InstanceRow {
   glm::mat4 clip_from_body;
   glm::vec4 sun_body;
   glm::vec4 veil;
+  glm::vec4 joints;
 };
-constexpr GLuint kMatrixAttribute = 3, kSunAttribute = 7, kVeilAttribute = 8;
+constexpr GLuint kMatrixAttribute = 3, kSunAttribute = 7, kVeilAttribute = 8, kJointsAttribute = 9;
+constexpr GLint kPivotsUniform = 0;
 
 struct Drawn {
   int slot;
@@ -46,7 +49,7 @@ std::vector<Drawn> Group(const DisplayList& list, std::span<const MovedObject> o
 }
 
 InstanceRow RowOf(const ObjectInstance& instance, const MovedObject& object, const ViewMatrices& matrices,
-                  const glm::dvec3& sun_ecef) {
+                  const glm::dvec3& sun_ecef, double since_list_s) {
   glm::dmat4 ecef_from_body(object.ecef_from_body * static_cast<double>(instance.look.scale));
   ecef_from_body[3] = glm::dvec4(object.position_ecef, 1.0);
   const Daylight light = DaylightAt(object.position_ecef, matrices, sun_ecef);
@@ -55,6 +58,10 @@ InstanceRow RowOf(const ObjectInstance& instance, const MovedObject& object, con
   row.sun_body =
       glm::vec4(glm::vec3(glm::transpose(object.ecef_from_body) * sun_ecef), light.day * instance.look.shade);
   row.veil = glm::vec4(light.air, light.left);
+  const double spin =
+      static_cast<double>(instance.joints.spin_rad) + since_list_s * static_cast<double>(instance.spin_radps);
+  row.joints = {instance.joints.turret_rad, instance.joints.gun_rad, static_cast<float>(std::remainder(spin, 2 * M_PI)),
+                instance.joints.open};
   return row;
 }
 
@@ -74,23 +81,24 @@ ObjectPass::ObjectPass(const GpuPages& pages)
   };
   attribute(0, 3, GL_FLOAT, GL_FALSE, offsetof(ModelVertex, x), 0);
   attribute(1, 3, GL_FLOAT, GL_FALSE, offsetof(ModelVertex, normal_x), 0);
-  attribute(2, 3, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(ModelVertex, colour), 0);
+  attribute(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(ModelVertex, colour), 0);  // and the joint
   for (GLuint column = 0; column < 4; ++column) {
     attribute(kMatrixAttribute + column, 4, GL_FLOAT, GL_FALSE, column * sizeof(glm::vec4), 1);
   }
   attribute(kSunAttribute, 4, GL_FLOAT, GL_FALSE, offsetof(InstanceRow, sun_body), 1);
   attribute(kVeilAttribute, 4, GL_FLOAT, GL_FALSE, offsetof(InstanceRow, veil), 1);
+  attribute(kJointsAttribute, 4, GL_FLOAT, GL_FALSE, offsetof(InstanceRow, joints), 1);
   glVertexArrayBindingDivisor(array, 1, 1);
 }
 
 uint32_t ObjectPass::Draw(const DisplayList& list, std::span<const MovedObject> objects, const ViewParameters& view,
-                          const ViewMatrices& matrices, const glm::dvec3& sun_ecef) {
+                          const ViewMatrices& matrices, const glm::dvec3& sun_ecef, double since_list_s) {
   const std::vector<Drawn> drawn = Group(list, objects, view, pages_);
   if (drawn.empty()) return 0;
   std::vector<InstanceRow> rows;
   rows.reserve(drawn.size());
   for (const Drawn& one : drawn) {
-    rows.push_back(RowOf(list.instances[one.object->instance], *one.object, matrices, sun_ecef));
+    rows.push_back(RowOf(list.instances[one.object->instance], *one.object, matrices, sun_ecef, since_list_s));
   }
   glNamedBufferData(instances_.get(), static_cast<GLsizeiptr>(rows.size() * sizeof(InstanceRow)), rows.data(),
                     GL_STREAM_DRAW);
@@ -104,6 +112,7 @@ uint32_t ObjectPass::Draw(const DisplayList& list, std::span<const MovedObject> 
       ++end;
     const GpuModel& model = pages_.model(drawn[first].slot);
     const ModelPage::Detail& detail = model.details[drawn[first].detail];
+    glUniform3fv(kPivotsUniform, static_cast<GLsizei>(kModelJoints), &model.pivots[0].x);
     glVertexArrayVertexBuffer(vertex_array_.get(), 0, model.vertices.get(), 0, sizeof(ModelVertex));
     glVertexArrayElementBuffer(vertex_array_.get(), model.indices.get());
     glDrawElementsInstancedBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(detail.index_count), GL_UNSIGNED_INT,

@@ -22,7 +22,7 @@ class ObjectPass {
 
   // Returns the triangles drawn. REQUIRES: the view's block is bound.
   uint32_t Draw(const DisplayList& list, std::span<const MovedObject> objects, const ViewParameters& view,
-                const ViewMatrices& matrices, const glm::dvec3& sun_ecef);
+                const ViewMatrices& matrices, const glm::dvec3& sun_ecef, double since_list_s);
 
  private:
   const GpuPages& pages_;

@@ -251,7 +251,8 @@ Renderer::Drawn Renderer::DrawView(View& view, const ViewParameters& parameters,
     WalkList(objects, view.matrices, view.visible_objects);
     const std::vector<MovedObject> moved =
         MoveObjects(objects, view.visible_objects.instances, parameters, view.matrices, now_s);
-    drawn.triangles += objects_.Draw(objects, moved, parameters, view.matrices, sun_ecef);
+    const double since_objects_s = std::clamp(now_s - objects.time_s, 0.0, kLongestExtrapolation_s);
+    drawn.triangles += objects_.Draw(objects, moved, parameters, view.matrices, sun_ecef, since_objects_s);
     AddObjectOverlay(objects, moved, parameters, view.matrices, view.overlay);
   }
   if (parameters.sky) sky_.Draw();

@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <string_view>
 
 namespace belvedere {
 namespace {
@@ -66,10 +67,26 @@ aiVector3D ToBody(const aiVector3D& v) {
   return {v.z, -v.x, -v.y};
 }
 
-ModelVertex MakeVertex(const aiMesh& mesh, unsigned index, const Colour& colour) {
-  const aiVector3D position = ToBody(mesh.mVertices[index]);
-  const aiVector3D normal = mesh.HasNormals() ? ToBody(mesh.mNormals[index]) : aiVector3D(0, 0, -1);
-  ModelVertex vertex{position.x, position.y, position.z, normal.x, normal.y, normal.z, {}};
+ModelJoint JointOf(std::string_view node_name) {
+  constexpr std::array<std::string_view, kModelJoints> kNames = {"",           "turret",    "gun",  "rotor",
+                                                                 "tail_rotor", "propeller", "gear", "hatch"};
+  const auto* const found = std::find(kNames.begin() + 1, kNames.end(), node_name);
+  return found == kNames.end() ? ModelJoint::kNone : static_cast<ModelJoint>(found - kNames.begin());
+}
+
+// Where the vertices of a node go.
+struct Placement {
+  aiMatrix4x4 transform;
+  ModelJoint joint = ModelJoint::kNone;
+};
+
+ModelVertex MakeVertex(const aiMesh& mesh, unsigned index, const Colour& colour, const Placement& placement) {
+  const aiVector3D position = ToBody(placement.transform * mesh.mVertices[index]);
+  const aiVector3D turned =
+      aiMatrix3x3(placement.transform) * (mesh.HasNormals() ? mesh.mNormals[index] : aiVector3D(0, 1, 0));
+  const aiVector3D normal = ToBody(turned).NormalizeSafe();
+  ModelVertex vertex{position.x, position.y, position.z, normal.x,
+                     normal.y,   normal.z,   {},         static_cast<uint8_t>(placement.joint)};
   const aiColor4D own = mesh.HasVertexColors(0) ? mesh.mColors[0][index] : aiColor4D(1, 1, 1, 1);
   const Colour tinted{colour[0] * own.r, colour[1] * own.g, colour[2] * own.b, 1};
   for (size_t channel = 0; channel < vertex.colour.size(); ++channel) {
@@ -78,14 +95,36 @@ ModelVertex MakeVertex(const aiMesh& mesh, unsigned index, const Colour& colour)
   return vertex;
 }
 
-void Append(const aiMesh& mesh, const Colour& colour, ModelPage& page) {
+void Append(const aiMesh& mesh, const Colour& colour, const Placement& placement, ModelPage& page) {
   const auto first = static_cast<uint32_t>(page.vertices.size());
-  for (unsigned i = 0; i < mesh.mNumVertices; ++i) page.vertices.push_back(MakeVertex(mesh, i, colour));
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) page.vertices.push_back(MakeVertex(mesh, i, colour, placement));
   for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
     const aiFace& face = mesh.mFaces[i];
     if (face.mNumIndices != 3) continue;  // points and lines
     for (unsigned corner = 0; corner < 3; ++corner) page.indices.push_back(first + face.mIndices[corner]);
   }
+}
+
+// A node, and what hangs under it, which moves with it unless it is a joint of its own. False where it is too much.
+bool AppendNode(const aiScene& scene, const aiNode& node, Placement placement, const std::vector<Colour>& colours,
+                ModelPage& page) {
+  placement.transform = placement.transform * node.mTransformation;
+  const ModelJoint joint = JointOf(node.mName.C_Str());
+  if (joint != ModelJoint::kNone) {
+    const aiVector3D pivot = ToBody(placement.transform * aiVector3D(0, 0, 0));
+    page.pivots[static_cast<size_t>(joint)] = {pivot.x, pivot.y, pivot.z};
+    placement.joint = joint;
+  }
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+    if (page.vertices.size() + mesh.mNumVertices > kMostVertices) return false;
+    const Colour colour = mesh.mMaterialIndex < colours.size() ? colours[mesh.mMaterialIndex] : Colour{1, 1, 1, 1};
+    Append(mesh, colour, placement, page);
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i) {
+    if (!AppendNode(scene, *node.mChildren[i], placement, colours, page)) return false;
+  }
+  return true;
 }
 
 bool Finite(const ModelPage& page) {
@@ -111,6 +150,7 @@ bool ScaleToLength(ModelPage& page, float length_m) {
     vertex.z *= scale;
     page.radius_m = std::max(page.radius_m, std::hypot(vertex.x, vertex.y, vertex.z));
   }
+  for (glm::vec3& pivot : page.pivots) pivot *= scale;
   return true;
 }
 
@@ -122,12 +162,8 @@ Result<std::unique_ptr<ModelPage>> MakePage(const aiScene& scene, const std::str
     colours.push_back(ColourOf(*scene.mMaterials[i], file.parent_path(), linear));
   }
   auto page = std::make_unique<ModelPage>();
-  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
-    const aiMesh& mesh = *scene.mMeshes[i];
-    if (page->vertices.size() + mesh.mNumVertices > kMostVertices) {
-      return Status::Error("{}: the model has more than {} vertices; simplify it", path, kMostVertices);
-    }
-    Append(mesh, mesh.mMaterialIndex < colours.size() ? colours[mesh.mMaterialIndex] : Colour{1, 1, 1, 1}, *page);
+  if (!AppendNode(scene, *scene.mRootNode, {}, colours, *page)) {
+    return Status::Error("{}: the model has more than {} vertices; simplify it", path, kMostVertices);
   }
   if (page->indices.empty()) return Status::Error("{}: the model has no triangles; export it again", path);
   if (!Finite(*page)) return Status::Error("{}: the model has vertices that are no numbers; export it again", path);
@@ -142,9 +178,8 @@ Result<std::unique_ptr<ModelPage>> MakePage(const aiScene& scene, const std::str
 
 Result<std::unique_ptr<ModelPage>> ReadModelFile(const std::string& path, float length_m) {
   Assimp::Importer importer;
-  const aiScene* scene =
-      importer.ReadFile(path, aiProcess_Triangulate | aiProcess_GenNormals | aiProcess_PreTransformVertices |
-                                  aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
+  const aiScene* scene = importer.ReadFile(
+      path, aiProcess_Triangulate | aiProcess_GenNormals | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType);
   if (scene == nullptr) return Status::Error("{}: cannot read the model: {}", path, importer.GetErrorString());
   return MakePage(*scene, path, length_m);
 }

@@ -87,6 +87,8 @@ ViewSpec ReadView(SettingsTable& table) {
   Assign(table.Boolean("effects"), view.effects);
   Assign(table.Boolean("groups"), view.groups);
   Assign(table.Boolean("frames"), view.frames);
+  Assign(table.Boolean("on_ground"), view.on_ground);
+  Assign(table.Boolean("on_sea"), view.on_sea);
   Assign(table.Number("trails_s", 1, 3600), view.trails_s);
   view.trails = table.Boolean("trails").value_or(table.Has("trails_s"));
   Assign(table.Number("vectors_s", 1, 3600), view.vectors_s);

@@ -42,6 +42,7 @@ struct ViewSpec {
   std::shared_ptr<const LabelFormat> label_format;  // nullptr: the usual one
   double trails_s = 60, vectors_s = 30;             // how far back and ahead, where they are on
   bool effects = true, trails = false, vectors = false, groups = true, frames = false;
+  bool on_ground = true, on_sea = true;
   bool hud = true, labels = true, objects = true, symbols = false, sky = true;
 };
 

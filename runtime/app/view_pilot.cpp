@@ -248,6 +248,8 @@ ViewParameters ViewPilot::Parameters(uint64_t number, double time_s, double utc_
   view.labels = labels_;
   view.label_format = spec_.label_format;
   view.effects = effects_;
+  view.on_ground = spec_.on_ground;
+  view.on_sea = spec_.on_sea;
   view.groups = groups_;
   view.frames = frames_;
   view.trails_s = trails_ ? spec_.trails_s : 0;

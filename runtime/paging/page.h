@@ -153,10 +153,25 @@ struct TerrainPage final : Page {
 };
 
 // ---- models: what the object server makes of a model file -----------------------------------------------------------
+// What of a model moves by itself. A file names them: nodes "turret", "gun", "rotor", "tail_rotor", "propeller", "gear"
+// and "hatch", with what hangs under them.
+enum class ModelJoint : uint8_t {
+  kNone,
+  kTurret,     // turns about the body's z axis,
+  kGun,        // rises about y, and turns with the turret
+  kRotor,      // spins about z,
+  kTailRotor,  // about y,
+  kPropeller,  // about x
+  kGear,       // retracts into its pivot
+  kHatch,      // opens about y
+};
+inline constexpr size_t kModelJoints = 8;
+
 struct ModelVertex {
   float x, y, z;  // metres in the body frame: x forward, y right, z down
   float normal_x, normal_y, normal_z;
-  std::array<uint8_t, 4> colour;  // sRGB
+  std::array<uint8_t, 3> colour;  // sRGB
+  uint8_t joint;                  // ModelJoint
 };
 
 struct ModelPage final : Page {
@@ -168,8 +183,9 @@ struct ModelPage final : Page {
   };
   std::vector<ModelVertex> vertices;
   std::vector<uint32_t> indices;
-  std::vector<Detail> details;  // finest first; at least one
-  float radius_m = 0;           // of the sphere around the body's origin that holds it
+  std::vector<Detail> details;                   // finest first; at least one
+  std::array<glm::vec3, kModelJoints> pivots{};  // of each joint, in the body frame
+  float radius_m = 0;                            // of the sphere around the body's origin that holds it
 
   size_t bytes() const override {
     return sizeof(*this) + vertices.capacity() * sizeof(ModelVertex) + indices.capacity() * sizeof(uint32_t) +

@@ -117,6 +117,14 @@ enum class SymbolShape : uint8_t {
 };
 inline constexpr size_t kSymbolShapes = 10;
 
+// How the joints of a model stand (ModelJoint in page.h).
+struct JointPose {
+  float turret_rad = 0;  // clockwise from above
+  float gun_rad = 0;     // upwards
+  float spin_rad = 0;    // of rotors and propellers
+  float open = 1;        // gear down, hatch shut: 1; gear up, hatch open: 0
+};
+
 // One moving object. The render thread moves it on from `time_s` to its own frame's time, as it does the eye.
 struct ObjectInstance {
   glm::dvec3 position_ecef{};
@@ -125,8 +133,10 @@ struct ObjectInstance {
   glm::dvec3 angular_velocity_body{};  // radians/s
   double radius_m = 0;
   ObjectLook look;
-  uint32_t label = 0;   // index -> labels, 0 none
-  uint64_t object = 0;  // ObjectId, for picking and for tests
+  JointPose joints;
+  float spin_radps = 0;  // how fast spin_rad goes on
+  uint32_t label = 0;    // index -> labels, 0 none
+  uint64_t object = 0;   // ObjectId, for picking and for tests
 };
 
 // Smoke, fire, light, trails: soft shapes that face the eye, from one point to another or round about one.

@@ -65,7 +65,9 @@ struct ViewParameters {
   double texel_px = 1.25;      // bound on the size of a texel on the screen
   std::vector<LayerUse> image_layers;  // drawn over each other in this order, kMaxImageLayers at most
   bool draw_objects = true;
-  bool symbols = false;  // objects as symbols of constant size instead of models (the overview)
+  bool symbols = false;   // objects as symbols of constant size instead of models (the overview)
+  bool on_ground = true;  // land vehicles and people stand on the drawn ground, whatever height they say
+  bool on_sea = true;     // and ships on the sea
   bool labels = true;
   std::shared_ptr<const LabelFormat> label_format;  // nullptr: marking and flight level
   bool groups = true;                               // many objects that are close together as one symbol

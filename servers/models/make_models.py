@@ -21,11 +21,21 @@ class Model:
     """Triangles by material; each vertex is (position, normal)."""
 
     def __init__(self):
-        self.materials = {}  # name -> (rgb, [vertices])
+        self.materials = {}  # (part, name) -> (rgb, [vertices])
+        self.parts = {}  # what moves by itself: name -> (pivot, the part that it hangs under or None)
+        self.part = None
 
     def colour(self, name, rgb):
-        self.materials.setdefault(name, (rgb, []))
-        return self.materials[name][1]
+        self.materials.setdefault((self.part, name), (rgb, []))
+        return self.materials[self.part, name][1]
+
+    def begin(self, part, pivot, under=None):
+        """What follows belongs to that part, which turns about the pivot; end() goes back to the body."""
+        self.parts[part] = (pivot, under)
+        self.part = part
+
+    def end(self):
+        self.part = None
 
     def triangle(self, out, a, b, c, normals=None):
         if normals is None:
@@ -191,6 +201,12 @@ def airliner():
         m.box(engine, s * 5.7 - 0.15, s * 5.7 + 0.15, -1.3, -0.6, 0.0, 3.2)
 
     both(side)
+    m.begin("gear", (0, -1.6, 0))
+    for x, z in ((0, 13.5), (2.9, -1.5), (-2.9, -1.5)):
+        m.box(m.colour("legs", GREY), x - 0.12, x + 0.12, -3.2, -1.4, z - 0.12, z + 0.12)
+        for w in (-0.35, 0.35):
+            m.wheel(m.colour("wheels", DARK), x + w, -3.2, z, 0.55, 0.35, 6)
+    m.end()
     m.wing(m.colour("fin", BLUE), (0, 1.3, -12.6, 5.4, 0.45), (0, 7.7, -17.4, 2.2, 0.2), vertical=True)
     return m
 
@@ -216,7 +232,9 @@ def light_aircraft():
     m.wing(red, (0, 0.4, -3.1, 1.4, 0.1), (0, 1.8, -4.1, 0.8, 0.06), vertical=True)
     m.wheel(m.colour("wheels", DARK), 0, -1.0, 2.6, 0.2, 0.15, 8)
     m.box(wing, -0.05, 0.05, -0.9, -0.3, 2.55, 2.65)
+    m.begin("propeller", (0, -0.1, 3.46))
     m.box(m.colour("propeller", DARK), -0.08, 0.08, -1.05, 0.85, 3.42, 3.5)
+    m.end()
     return m
 
 
@@ -227,6 +245,7 @@ def helicopter():
                   (3.2, 0, -0.4, 0.9, 0.85), (4.2, 0, -0.7, 0.15, 0.2)], 12)
     m.tube(m.colour("windows", GLASS), [(1.5, 0, 0.05, 1.17, 0.97), (2.6, 0, -0.13, 1.02, 0.86), (3.5, 0, -0.28, 0.66, 0.54)], 12)
     m.tube(m.colour("engine", GREY), [(-2.4, 0, 0.9, 0.35, 0.3), (-1.4, 0, 1.0, 0.6, 0.45), (0.9, 0, 1.0, 0.55, 0.4)], 8)
+    m.begin("rotor", (0, 1.8, -0.3))
     dark = m.colour("rotor", DARK)
     m.tube(dark, [(0.9, -0.3, 0, 0.14, 0.14), (1.9, -0.3, 0, 0.12, 0.12)], 6, "y")
     for blade in range(4):
@@ -237,9 +256,13 @@ def helicopter():
         outline = [(across[0], across[1]), (far[0] + across[0], far[1] + across[1]), (far[0] - across[0], far[1] - across[1]),
                    (-across[0], -across[1])]
         m.loft(dark, [[(x, y, z - 0.3) for x, z in outline] for y in (1.78, 1.86)])
+    m.end()
     m.wing(body, (0, 0.5, -6.2, 1.3, 0.2), (0, 2.2, -7.0, 0.7, 0.12), vertical=True)
+    m.begin("tail_rotor", (0.17, 1.3, -6.95))
+    dark = m.colour("rotor", DARK)
     m.box(dark, 0.14, 0.2, 0.45, 2.15, -7.05, -6.85)
     m.box(dark, 0.14, 0.2, 1.2, 1.4, -7.8, -6.1)
+    m.end()
 
     def side(s):
         m.wing(body, (s * 0.1, 0.5, -5.2, 0.8, 0.1), (s * 1.4, 0.5, -5.3, 0.6, 0.08))
@@ -269,6 +292,11 @@ def fighter():
                                              (-0.9, s * 4.8, 0.05, 0.01, 0.01)], 6)
 
     both(side)
+    m.begin("gear", (0, -0.8, 0))
+    for x, z in ((0, 3.8), (1.1, -1.6), (-1.1, -1.6)):
+        m.box(m.colour("legs", WHITE), x - 0.06, x + 0.06, -1.7, -0.7, z - 0.06, z + 0.06)
+        m.wheel(m.colour("wheels", DARK), x, -1.7, z, 0.32, 0.2, 8)
+    m.end()
     m.wing(wing, (0, 0.6, -3.6, 3.2, 0.2), (0, 3.6, -6.4, 1.2, 0.08), vertical=True)
     return m
 
@@ -316,10 +344,14 @@ def tank():
         m.box(hull, *sorted((s * 1.3, s * 1.86)), 1.0, 1.35, -3.6, 3.2)
 
     both(side)
+    m.begin("turret", (0, 1.65, -0.4))
     turret = m.colour("turret", (0.28, 0.33, 0.20))
     m.prism(turret, [(-2.6, 1.65), (1.6, 1.65), (1.9, 1.95), (1.2, 2.4), (-2.2, 2.45), (-2.7, 2.1)], -1.35, 1.35)
-    m.tube(turret, [(2.44, -0.5, 0.6, 0.3, 0.3), (2.65, -0.5, 0.6, 0.26, 0.26)], 8, "y")
+    m.begin("hatch", (0.6, 2.45, -0.85), "turret")
+    m.tube(m.colour("hatch", (0.25, 0.29, 0.18)), [(2.44, -0.5, 0.6, 0.3, 0.3), (2.6, -0.5, 0.6, 0.26, 0.26)], 8, "y")
+    m.begin("gun", (0, 2.02, 1.5), "turret")
     m.tube(m.colour("gun", DARK), [(1.6, 0, 2.02, 0.14, 0.14), (3.4, 0, 2.06, 0.1, 0.1), (5.8, 0, 2.1, 0.08, 0.08)], 8)
+    m.end()
     return m
 
 
@@ -346,6 +378,43 @@ def ship():
     return m
 
 
+def missile():
+    m = Model()
+    m.tube(m.colour("body", WHITE), [(-1.8, 0, 0, 0.11, 0.11), (1.35, 0, 0, 0.11, 0.11), (1.65, 0, 0, 0.08, 0.08),
+                                     (1.85, 0, 0, 0.01, 0.01)], 10)
+    m.tube(m.colour("nozzle", DARK), [(-1.86, 0, 0, 0.07, 0.07), (-1.78, 0, 0, 0.09, 0.09)], 8)
+    m.tube(m.colour("band", RED), [(0.7, 0, 0, 0.115, 0.115), (0.85, 0, 0, 0.115, 0.115)], 10)
+    fin = m.colour("fins", GREY)
+
+    def side(s):
+        for z, chord, span in ((-1.2, 0.55, 0.34), (0.5, 0.4, 0.24)):
+            m.wing(fin, (s * 0.1, 0, z, chord, 0.02), (s * span, 0, z - 0.25, chord * 0.5, 0.01))
+            m.wing(fin, (0, s * 0.1, z, chord, 0.02), (0, s * span, z - 0.25, chord * 0.5, 0.01), vertical=True)
+
+    both(side)
+    return m
+
+
+def soldier():
+    m = Model()
+    uniform = m.colour("uniform", (0.33, 0.36, 0.24))
+    boots = m.colour("boots", DARK)
+    skin = m.colour("skin", (0.72, 0.53, 0.42))
+
+    def side(s):
+        m.tube(uniform, [(0.12, 0.02, s * 0.11, 0.08, 0.08), (0.88, 0, s * 0.1, 0.1, 0.1)], 6, "y")
+        m.box(boots, s * 0.11 - 0.06, s * 0.11 + 0.06, 0, 0.13, -0.1, 0.18)
+        m.tube(uniform, [(0.98, 0.14, s * 0.26, 0.05, 0.05), (1.42, -0.02, s * 0.25, 0.07, 0.07)], 6, "y")
+
+    both(side)
+    m.tube(uniform, [(0.85, 0, 0, 0.13, 0.2), (1.2, 0, 0, 0.13, 0.2), (1.47, 0, 0, 0.11, 0.22)], 8, "y")
+    m.tube(skin, [(1.47, 0, 0, 0.06, 0.06), (1.58, 0.02, 0, 0.09, 0.08), (1.68, 0.01, 0, 0.1, 0.09)], 8, "y")
+    m.tube(m.colour("helmet", GREEN), [(1.64, 0, 0, 0.14, 0.13), (1.74, 0, 0, 0.13, 0.12), (1.82, 0, 0, 0.05, 0.05)], 8, "y")
+    m.box(m.colour("pack", GREEN), -0.17, 0.17, 1.0, 1.45, -0.3, -0.12)
+    m.box(m.colour("rifle", DARK), -0.03, 0.03, 1.08, 1.16, 0.05, 0.78)
+    return m
+
+
 # ---- glTF ------------------------------------------------------------------------------------------------------------
 
 FLOAT, UNSIGNED_SHORT = 5126, 5123
@@ -366,7 +435,7 @@ def indexed(vertices):
 
 def write_gltf(model, name, path):
     blob = bytearray()
-    views, accessors, primitives, materials = [], [], [], []
+    views, accessors, materials = [], [], []
 
     def add(data, target, component, count, kind, bounds=None):
         while len(blob) % 4:
@@ -379,8 +448,11 @@ def write_gltf(model, name, path):
         accessors.append(accessor)
         return len(accessors) - 1
 
-    for material, (rgb, vertices) in sorted(model.materials.items()):
-        unique, indices = indexed(vertices)
+    meshes = {part: [] for part in [None, *model.parts]}
+    for part, material in sorted(model.materials, key=lambda key: (key[0] or "", key[1])):
+        rgb, vertices = model.materials[part, material]
+        pivot = model.parts[part][0] if part else (0, 0, 0)
+        unique, indices = indexed([(sub(position, pivot), normal) for position, normal in vertices])
         linear = [round(c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4, 5) for c in rgb]
         materials.append({"name": material, "pbrMetallicRoughness": {"baseColorFactor": linear + [1.0], "metallicFactor": 0.0,
                                                                       "roughnessFactor": 0.8}})
@@ -389,16 +461,27 @@ def write_gltf(model, name, path):
         position = add(b"".join(struct.pack("<3f", *v[:3]) for v in unique), ARRAY_BUFFER, FLOAT, len(unique), "VEC3", bounds)
         normal = add(b"".join(struct.pack("<3f", *v[3:]) for v in unique), ARRAY_BUFFER, FLOAT, len(unique), "VEC3")
         index = add(struct.pack("<%dH" % len(indices), *indices), ELEMENT_ARRAY_BUFFER, UNSIGNED_SHORT, len(indices), "SCALAR")
-        primitives.append({"attributes": {"POSITION": position, "NORMAL": normal}, "indices": index,
-                           "material": len(materials) - 1})
+        meshes[part].append({"attributes": {"POSITION": position, "NORMAL": normal}, "indices": index,
+                             "material": len(materials) - 1})
+    names = [None, *model.parts]
+    nodes = []
+    for number, part in enumerate(names):
+        node = {"mesh": number, "name": part or name}
+        if part:
+            pivot, under = model.parts[part]
+            node["translation"] = [round(v, 4) for v in sub(pivot, model.parts[under][0] if under else (0, 0, 0))]
+        children = [i for i, other in enumerate(names) if other and model.parts[other][1] == part]
+        if children:
+            node["children"] = children
+        nodes.append(node)
 
     uri = "data:application/octet-stream;base64," + base64.b64encode(bytes(blob)).decode("ascii")
     document = {
         "asset": {"version": "2.0", "generator": "make_models.py"},
         "scene": 0,
         "scenes": [{"nodes": [0]}],
-        "nodes": [{"mesh": 0, "name": name}],
-        "meshes": [{"name": name, "primitives": primitives}],
+        "nodes": nodes,
+        "meshes": [{"name": part or name, "primitives": meshes[part]} for part in names],
         "materials": materials,
         "accessors": accessors,
         "bufferViews": views,
@@ -407,7 +490,7 @@ def write_gltf(model, name, path):
     path.write_text(json.dumps(document, indent=1) + "\n", encoding="ascii")
 
 
-MODELS = (airliner, light_aircraft, helicopter, fighter, truck, car, tank, ship)
+MODELS = (airliner, light_aircraft, helicopter, fighter, truck, car, tank, ship, missile, soldier)
 
 
 def main():

@@ -67,6 +67,8 @@ position = [10, -20]
   label = "{marking} {speed}"
   effects = false
   groups = false
+  on_ground = false
+  on_sea = false
   trails = true
   vectors_s = 45
 [[watch]]
@@ -106,7 +108,7 @@ radius_m = 5000
   ASSERT_EQ(station->windows.size(), 3U);
   const ViewSpec& second = station->windows[1].view;
   EXPECT_NE(second.label_format, nullptr);
-  EXPECT_FALSE(second.effects || second.groups);
+  EXPECT_FALSE(second.effects || second.groups || second.on_ground || second.on_sea);
   EXPECT_TRUE(second.trails && second.vectors);  // naming how far turns it on
   EXPECT_EQ(second.vectors_s, 45);
   EXPECT_TRUE(station->windows[2].view.frames);
@@ -189,7 +191,7 @@ TEST(StationFileTest, FirstMistakeOfTheFileIsTheOneNamed) {
 TEST(StationFileTest, StationOfTheDemoIsRead) {
   const auto station = LoadStation(std::string(BELVEDERE_SOURCE_DIR) + "/runtime/app/demo/station.toml");
   ASSERT_TRUE(station.ok()) << station.message();
-  ASSERT_EQ(station->windows.size(), 3U);
+  ASSERT_EQ(station->windows.size(), 4U);
   EXPECT_EQ(station->windows[0].view.kind, ViewKind::kTethered);
   EXPECT_EQ(station->windows[1].view.kind, ViewKind::kGodsEye);
   EXPECT_EQ(station->windows[2].view.kind, ViewKind::kOverview);

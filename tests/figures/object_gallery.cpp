@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include <cmath>
 #include <cstdlib>
 #include <functional>
 #include <memory>
@@ -216,12 +217,58 @@ void Labels(Gallery& gallery) {
       "objects-labels", view, scene, [] {}, 8.0);
 }
 
+void Models(Gallery& gallery) {
+  const double ground_m = gallery.ground_m();
+  const auto put = [&] {
+    ObjectRecord tank = gallery.At(-11, 22, ground_m, kTank, 60, 0);
+    tank.part_array = {{{0, 4096 + 11, 1.1F}, {0, 4416 + 13, 0.25F}}};
+    tank.part_count = 2;
+    tank.appearance = 4 << 9;  // hatch open
+    gallery.Put(tank);
+    ObjectRecord helicopter = gallery.At(14, 36, ground_m + 9, {1, 2, 225, 21, 1, 0, 0}, -60, 5);
+    helicopter.appearance = 1 << 22 | 3 << 13;
+    gallery.Put(helicopter);
+    ObjectRecord airliner = gallery.At(-55, 150, ground_m + 26, kAirliner, 100, 60);
+    airliner.appearance = 1 << 25 | 7 << 12;
+    gallery.Put(airliner);
+    ObjectRecord missile = gallery.At(2, 12, ground_m + 5.5, {2, 1, 225, 1, 1, 0, 0}, 75, 90);
+    missile.appearance = 1 << 16 | 1 << 7;
+    gallery.Put(missile);
+    for (int i = 0; i < 3; ++i) {
+      ObjectRecord soldier = gallery.At(1.2 * i, 9.5 + 0.5 * i, ground_m, {3, 1, 225, 1, 0, 0, 0}, 40, 0);
+      soldier.appearance = (i == 2 ? 5u : 1u) << 16;
+      gallery.Put(soldier);
+    }
+  };
+  ViewParameters view = gallery.View(-1, 2, ground_m + 4.0, 0, -3, 10);
+  view.labels = false;
+  gallery.Take(
+      "objects-models", view, put, [] {}, 0.3);
+}
+
+void Groups(Gallery& gallery) {
+  const auto put = [&] {
+    for (int i = 0; i < 900; ++i) {
+      const double around = 0.7 * i, out_m = 1500.0 * std::sqrt(i);
+      ObjectRecord one = gallery.At(out_m * std::cos(around), out_m * std::sin(around), 5000 + 7 * i,
+                                    i % 3 == 0 ? kFighter : kAirliner, 40, 150);
+      one.force = static_cast<uint8_t>(1 + i % 3);
+      gallery.Put(one);
+    }
+  };
+  ViewParameters view = gallery.View(0, -120e3, 90e3, 0, -36, 10);
+  gallery.Take(
+      "objects-groups", view, put, [] {}, 1.5);
+}
+
 int Run(const std::string& dataset, const std::string& folder) {
   Gallery gallery(dataset, folder);
   Appearance(gallery);
   Night(gallery);
   Battle(gallery);
   Labels(gallery);
+  Models(gallery);
+  Groups(gallery);
   return 0;
 }
 

@@ -24,7 +24,7 @@ std::unique_ptr<ModelPage> Cube() {
         p[static_cast<size_t>(axis)] = n[static_cast<size_t>(axis)] = side;
         p[static_cast<size_t>((axis + 1) % 3)] = a * side;
         p[static_cast<size_t>((axis + 2) % 3)] = b;
-        page->vertices.push_back({p[0], p[1], p[2], n[0], n[1], n[2], {20, 220, 20, 255}});
+        page->vertices.push_back({p[0], p[1], p[2], n[0], n[1], n[2], {20, 220, 20}, 0});
       }
       for (const uint32_t corner : {0U, 1U, 2U, 0U, 2U, 3U}) page->indices.push_back(first + corner);
     }
@@ -188,6 +188,27 @@ TEST_F(Objects, CanBeHidden) {
 }
 
 }  // namespace
+TEST_F(Objects, JointsMoveTheirPartOfTheModel) {
+  auto gun = Cube();  // 2 m, its pivot 4 m behind it
+  for (ModelVertex& vertex : gun->vertices) vertex.joint = static_cast<uint8_t>(ModelJoint::kTurret);
+  gun->pivots[static_cast<size_t>(ModelJoint::kTurret)] = {-4, 0, 0};
+  gun->radius_m = 8;
+  std::vector<PagePin> pins;
+  pins.push_back(scene_.AddModel(1, std::move(gun)));
+  stage_->Upload(std::move(pins));
+  const auto draw = [&](float turret_rad) {
+    ObjectInstance object = At({36.0, -118.0, 1000}, 100);
+    object.look.model_slot = 1;
+    object.joints.turret_rad = turret_rad;
+    Publish({object});
+    return Green(Draw());
+  };
+  const Blob ahead = draw(0), right = draw(1.5708F);
+  EXPECT_NEAR(ahead.centre.x, kWidth / 2, 2);  // heading north, seen from above
+  EXPECT_GT(right.centre.x, ahead.centre.x + 8);
+  EXPECT_GT(right.centre.y, ahead.centre.y + 8);
+}
+
 TEST_F(Objects, EffectsAreBlendedWhereTheyAre) {
   view_.sky = false;
   view_.background = {0.2F, 0.2F, 0.2F};

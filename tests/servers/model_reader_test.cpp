@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -110,7 +112,7 @@ TEST(ModelReader, TurnsAxesAndTakesColours) {
   std::set<Corner> corners;
   for (const ModelVertex& v : (*read)->vertices) {
     corners.insert({std::round(v.x), std::round(v.y), std::round(v.z)});
-    EXPECT_EQ(v.colour, (std::array<uint8_t, 4>{255, 128, 0, 255}));
+    EXPECT_EQ(v.colour, (std::array<uint8_t, 3>{255, 128, 0}));
   }
   EXPECT_EQ(corners, (std::set<Corner>{{0, 0, 0}, {0, -2, 0}, {0, 0, -4}, {8, 0, 0}}));
 }
@@ -127,6 +129,28 @@ TEST(ModelReader, SaysWhatIsWrongWithAFile) {
   EXPECT_NE(ReadModelFile(flat, 1).message().find("no length"), std::string::npos);
   const std::string points = TemporaryFile("points.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\np 1\np 2\n");
   EXPECT_FALSE(ReadModelFile(points, 1).ok());
+}
+
+TEST(ModelReader, WhatMovesByItselfKnowsItsJoint) {
+  const auto read = ReadModelFile(std::string(BELVEDERE_SOURCE_DIR) + "/servers/models/tank.gltf", 9.75F);
+  ASSERT_TRUE(read.ok()) << read.message();
+  const ModelPage& tank = **read;
+  std::array<size_t, kModelJoints> vertices{};
+  float gun_forward_m = 0;
+  for (const ModelVertex& v : tank.vertices) {
+    ASSERT_LT(v.joint, kModelJoints);
+    ++vertices[v.joint];
+    if (v.joint == static_cast<uint8_t>(ModelJoint::kGun)) gun_forward_m = std::max(gun_forward_m, v.x);
+  }
+  for (const ModelJoint joint : {ModelJoint::kNone, ModelJoint::kTurret, ModelJoint::kGun, ModelJoint::kHatch}) {
+    EXPECT_GT(vertices[static_cast<size_t>(joint)], 0u) << static_cast<int>(joint);
+  }
+  EXPECT_EQ(vertices[static_cast<size_t>(ModelJoint::kRotor)], 0u);
+  EXPECT_NEAR(gun_forward_m, 5.8, 0.05);
+  const glm::vec3 turret = tank.pivots[static_cast<size_t>(ModelJoint::kTurret)];
+  EXPECT_NEAR(turret.x, -0.4, 0.02);
+  EXPECT_NEAR(turret.z, -1.65, 0.02);
+  EXPECT_NEAR(tank.pivots[static_cast<size_t>(ModelJoint::kGun)].x, 1.5, 0.02);  // under the turret in the file
 }
 
 }  // namespace
