@@ -16,7 +16,10 @@ namespace {
 
 class IntakeTest : public testing::Test {
  protected:
-  void Take(std::span<const uint8_t> datagram) { intake_.Take(datagram, {10.0, 1000.0, {}}); }
+  void Take(std::span<const uint8_t> datagram) {
+    const double since_s = 0.1 * ticks_;
+    intake_.Take(datagram, {10.0 + since_s, 1000.0 + since_s, {}});
+  }
   std::shared_ptr<const ObjectSnapshot> Snapshot() {
     table_.Tick(10.0 + 0.1 * ++ticks_);
     return table_.Snapshot();
@@ -190,7 +193,7 @@ TEST_F(IntakeTest, EngagementsBecomeEvents) {
   detonation.result = 3;
   take(detonation);
   EXPECT_EQ(kinds().back(), Kind::kScorch);
-  EXPECT_NEAR(table_.Snapshot()->events.back().end_s, 310.0, 1e-9);
+  EXPECT_NEAR(table_.Snapshot()->events.back().end_s, 310.2, 1e-9);
   detonation.descriptor.warhead = 0;  // a bullet
   take(detonation);
   EXPECT_EQ(kinds().back(), Kind::kDust);
