@@ -3,14 +3,17 @@
 #include "dis/interruption.h"
 #include "dis/pcap.h"
 #include "dis/recorder.h"
+#include "dis/replay_clock.h"
 #include "runtime/base/log.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -100,25 +103,67 @@ void PrintLines(const nlohmann::ordered_json& counts) {
   }
 }
 
-// One pass over a capture, in its own time divided by `speed`.
-Status ReplayOnce(const ReplayCommand& command, UdpSender& sender, Interruption& interruption, const Clock& clock,
-                  uint64_t& sent) {
+// What comes from standard input while a recording is replayed, line by line.
+class ReplayCommands {
+ public:
+  bool open() const { return open_; }
+  // Reads what is there and obeys the lines that are whole.
+  void Read(ReplayClock& replay, double now_s) {
+    std::array<char, 512> piece{};
+    const ssize_t got = read(STDIN_FILENO, piece.data(), piece.size());
+    if (got <= 0) open_ = false;
+    if (got > 0) waiting_.append(piece.data(), static_cast<size_t>(got));
+    for (size_t end = 0; (end = waiting_.find('\n')) != std::string::npos; waiting_.erase(0, end + 1)) {
+      const std::string line = waiting_.substr(0, end);
+      if (const Status status = replay.Obey(line, now_s); !status.ok()) LogWarning("{}", status.message());
+    }
+    if (waiting_.size() > kLongest) waiting_.clear();
+  }
+
+ private:
+  static constexpr size_t kLongest = 4096;
+  bool open_ = true;
+  std::string waiting_;
+};
+
+// Waits until a datagram of that moment is due; false when interrupted. A paused replay whose input has ended would
+// wait for ever, and goes on.
+bool WaitForMoment(double recording_s, ReplayClock& replay, ReplayCommands* commands, Interruption& interruption,
+                   const Clock& clock) {
+  for (;;) {
+    const bool input = commands != nullptr && commands->open();
+    if (replay.paused() && !input && !replay.DueAt(recording_s)) (void)replay.Obey("go", clock.NowSeconds());
+    switch (interruption.WaitUntilOrInput(replay.DueAt(recording_s), clock, input)) {
+      case Interruption::Wake::kTime: return true;
+      case Interruption::Wake::kInterrupted: return false;
+      case Interruption::Wake::kInput: commands->Read(replay, clock.NowSeconds()); break;
+    }
+  }
+}
+
+// One pass over a capture, in its own time as the replay's clock has it.
+Status ReplayOnce(const ReplayCommand& command, UdpSender& sender, ReplayCommands* commands, Interruption& interruption,
+                  const Clock& clock, uint64_t& sent) {
   auto reader = PcapReader::Open(command.file);
   if (!reader.ok()) return reader.status();
-  const double start_s = clock.NowSeconds();
+  ReplayClock replay(command.speed, clock.NowSeconds());
+  if (command.paused) (void)replay.Obey("pause", clock.NowSeconds());
   std::optional<double> first_utc_s;
-  double last_progress_s = start_s;
+  double last_progress_s = clock.NowSeconds();
   uint64_t last_sent = sent;
   while (const auto datagram = reader->Next()) {
     if (!first_utc_s) first_utc_s = datagram->utc_s;
-    const double due_s = start_s + std::max(datagram->utc_s - *first_utc_s, 0.0) / command.speed;
-    if (!interruption.WaitUntil(due_s, clock)) return {};
+    const double moment_s = std::max(datagram->utc_s - *first_utc_s, 0.0);
+    if (!WaitForMoment(moment_s, replay, commands, interruption, clock)) return {};
     Status status = sender.Send(datagram->bytes);
     if (!status.ok()) return status;
     ++sent;
-    if (due_s - last_progress_s < kProgressEvery_s) continue;
-    LogInfo("{} datagrams, {:.0f}/s", sent, static_cast<double>(sent - last_sent) / (due_s - last_progress_s));
-    last_progress_s = due_s;
+    const double now_s = clock.NowSeconds();
+    replay.Sent(moment_s, now_s);
+    if (replay.paused()) LogInfo("datagram {} at {:.3f} s", sent, moment_s);
+    if (now_s - last_progress_s < kProgressEvery_s) continue;
+    LogInfo("{} datagrams, {:.0f}/s", sent, static_cast<double>(sent - last_sent) / (now_s - last_progress_s));
+    last_progress_s = now_s;
     last_sent = sent;
   }
   return reader->status();
@@ -199,9 +244,10 @@ Status Replay(const ReplayCommand& command) {
   auto sender = UdpSender::Open(*to, command.interface_address);
   if (!sender.ok()) return sender.status();
   uint64_t sent = 0;
+  ReplayCommands commands;
   do {
     const uint64_t before = sent;
-    Status status = ReplayOnce(command, **sender, interruption, clock, sent);
+    Status status = ReplayOnce(command, **sender, command.control ? &commands : nullptr, interruption, clock, sent);
     if (!status.ok()) return status;
     if (sent == before) break;  // an empty capture would loop without ever waiting
   } while (command.loop && !interruption.interrupted());

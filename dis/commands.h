@@ -59,6 +59,8 @@ struct ReplayCommand {
   std::string interface_address;
   double speed = 1;
   bool loop = false;
+  bool control = false;  // by lines of standard input
+  bool paused = false;   // at the start
 };
 Status Replay(const ReplayCommand& command);
 

@@ -92,6 +92,8 @@ void AddRecordAndReplay(CLI::App& app, Chosen& chosen, RecordCommand& record, Re
   command->add_option("--to", replay.to, "ADDR:PORT")->required();
   command->add_option("--speed", replay.speed, "times as fast")->check(CLI::PositiveNumber)->capture_default_str();
   command->add_flag("--loop", replay.loop, "again and again");
+  command->add_flag("--control", replay.control, "obey lines of standard input: pause, go, step [N], speed X");
+  command->add_flag("--paused", replay.paused, "stand before the first datagram; needs --control")->needs("--control");
   command->add_option("--interface", replay.interface_address, "IPv4 address that multicast leaves by");
   command->callback([&] { chosen = [&] { return Replay(replay); }; });
 }

@@ -1,0 +1,1 @@
+// Makes the precompiled header that the rooms share where they are built with a sanitizer.
