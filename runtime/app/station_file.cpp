@@ -164,6 +164,7 @@ FeedSpec ReadFeed(SettingsTable& table) {
     timeouts.clear();
   }
   std::vector<TimeoutRule> rules;
+  rules.reserve(timeouts.size());
   for (SettingsTable& timeout : timeouts) rules.push_back(ReadTimeout(timeout));
   feed.timeouts.insert(feed.timeouts.begin(), rules.begin(), rules.end());
   Assign(table.Integer("most_entities", 1, 10'000'000), feed.most_entities);
