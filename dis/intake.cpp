@@ -18,6 +18,15 @@ bool Matches(uint16_t wanted, uint16_t number) {
   return wanted == kAll || wanted == number;
 }
 
+// Whether something is attached to the entity there. Before version 7 the second byte only counted changes.
+bool Hangs(const VariableParameter& part, uint8_t version) {
+  constexpr uint8_t kDetached = 1;
+  constexpr uint32_t kLastStation = 0xFFFF;
+  if (part.record_type != VariableParameter::kAttachedPart || part.attached_to != 0) return false;
+  if (part.part_type == 0 || part.part_type > kLastStation || part.attached.kind == 0) return false;
+  return version < 7 || part.change != kDetached;
+}
+
 }  // namespace
 
 uint64_t IntakeCounters::rejected_total() const {
@@ -33,8 +42,9 @@ uint64_t IntakeCounters::ignored_total() const {
   return std::accumulate(ignored_type.begin(), ignored_type.end(), ignored_version);
 }
 
-ObjectRecord ToRecord(const EntityState& state, double state_time_s, double received_s) {
+ObjectRecord ToRecord(const EntityState& state, uint8_t version, double state_time_s, double received_s) {
   ObjectRecord record;
+  record.protocol_version = version;
   record.id = state.id;
   record.type = state.type;
   record.force = state.force;
@@ -50,10 +60,14 @@ ObjectRecord ToRecord(const EntityState& state, double state_time_s, double rece
   motion.model = DeadReckoningModel(state.model);
   motion.time_s = state_time_s;
   if (static_cast<uint8_t>(motion.model) != state.model && state.model != 0) record.flags = kObjectUnknownModel;
-  for (size_t i = 0; i < state.parameters.size() && record.part_count < ObjectRecord::kMaxParts; ++i) {
+  for (size_t i = 0; i < state.parameters.size(); ++i) {
     const VariableParameter part = state.parameters[i];
-    if (part.record_type != 0) continue;
-    record.part_array[record.part_count++] = {part.attached_to, part.part_type, part.value};
+    if (part.record_type == VariableParameter::kArticulatedPart && record.part_count < ObjectRecord::kMaxParts) {
+      record.part_array[record.part_count++] = {part.attached_to, part.part_type, part.value};
+    }
+    if (Hangs(part, version) && record.attached_count < ObjectRecord::kMaxParts) {
+      record.attached_array[record.attached_count++] = {static_cast<uint16_t>(part.part_type), part.attached};
+    }
   }
   return record;
 }
@@ -120,8 +134,7 @@ std::optional<Refusal> Intake::Apply(const EntityState& state, const PduHeader& 
   if (options.new_entities_per_s > 0 && !table_.Find(state.id) && !admission_.AdmitsNewEntity(host, arrival.time_s)) {
     return Refusal::kNewEntity;
   }
-  ObjectRecord record = ToRecord(state, StateTime(state.id, header.timestamp, arrival), arrival.time_s);
-  record.protocol_version = header.version;
+  ObjectRecord record = ToRecord(state, header.version, StateTime(state.id, header.timestamp, arrival), arrival.time_s);
   record.source = host;
   table_.Put(record);
   return std::nullopt;

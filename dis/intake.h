@@ -48,7 +48,7 @@ struct IntakeOptions {
 };
 
 // The record that an Entity State describes, as of state_time_s.
-ObjectRecord ToRecord(const EntityState& state, double state_time_s, double received_s);
+ObjectRecord ToRecord(const EntityState& state, uint8_t version, double state_time_s, double received_s);
 
 class Intake {
  public:

@@ -12,7 +12,7 @@
 namespace belvedere::dis {
 
 void Residuals::Add(const EntityState& state, uint32_t timestamp) {
-  const KinematicState now = ToRecord(state, 0.0, 0.0).kinematics;
+  const KinematicState now = ToRecord(state, 7, 0.0, 0.0).kinematics;
   const auto [known, is_new] = last_.try_emplace(state.id, Last{now, timestamp});
   if (is_new) return;
   const double dt_s = std::remainder(SecondsPastHour(timestamp) - SecondsPastHour(known->second.timestamp), 3600.0);

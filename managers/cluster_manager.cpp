@@ -16,6 +16,7 @@ ClusterManager::ClusterManager(const ObjectTable& objects, ClusterOptions option
     : objects_(objects),
       options_(std::move(options)),
       clock_(clock),
+      watched_(options_.watched),
       thread_("clusters", kLooksPerSecond, [this] { Step(); }) {}
 
 void ClusterManager::Step() {
@@ -25,7 +26,7 @@ void ClusterManager::Step() {
   if (snapshot->objects.empty() && tree_.Get()->levels.empty()) return;
   const TraceSpan span("clusters.tree");
   tree_.Publish(snapshot->objects.empty() ? ClusterTree{}
-                                          : hierarchy_.Update(*snapshot, now_s, options_.importance, options_.watched));
+                                          : hierarchy_.Update(*snapshot, now_s, options_.importance, *watched_.Get()));
   next_s_ = now_s + std::max(1.0 / kTreesPerSecond, (clock_.NowSeconds() - now_s) / kMostClusterShare);
 }
 

@@ -60,14 +60,32 @@ JointsOf JointsAt(const ObjectRecord& record, double now_s) {
   return joints;
 }
 
-glm::dmat3 PostureOf(const ObjectRecord& record, const glm::dmat3& ecef_from_body) {
-  constexpr uint32_t kProne = 5, kCrawling = 6;
+Posture PostureOf(const ObjectRecord& record, const glm::dmat3& ecef_from_body) {
+  enum LifeFormState : uint32_t {
+    kKneeling = 4,
+    kProne = 5,
+    kCrawling = 6,
+    kSwimming = 7,
+    kSitting = 10,
+    kSquatting = 11,
+    kCrouching = 12,
+    kWading = 13
+  };
   constexpr uint32_t kFatal = 3;
-  if (record.type.kind != EntityType::kLifeForm) return ecef_from_body;
-  const uint32_t posture = record.appearance >> 16 & 15;
-  if (posture != kProne && posture != kCrawling && record.damage() != kFatal) return ecef_from_body;
-  // Head forward, front down.
-  return {ecef_from_body[2], ecef_from_body[1], -ecef_from_body[0]};
+  if (record.type.kind != EntityType::kLifeForm) return {ecef_from_body, 0};
+  const glm::dmat3 lying{ecef_from_body[2], ecef_from_body[1], -ecef_from_body[0]};  // head forward, front down
+  if (record.damage() == kFatal) return {lying, 0};
+  switch (record.appearance >> 16 & 15) {
+    case kProne:
+    case kCrawling:
+    case kSwimming: return {lying, 0};
+    case kKneeling: return {ecef_from_body, 0.45};
+    case kSitting:
+    case kSquatting: return {ecef_from_body, 0.7};
+    case kCrouching: return {ecef_from_body, 0.3};
+    case kWading: return {ecef_from_body, 0.6};
+    default: return {ecef_from_body, 0};
+  }
 }
 
 }  // namespace belvedere

@@ -20,7 +20,12 @@ struct JointsOf {
 };
 JointsOf JointsAt(const ObjectRecord& record, double now_s);
 
-// A life form that lies or crawls is turned onto its front.
-glm::dmat3 PostureOf(const ObjectRecord& record, const glm::dmat3& ecef_from_body);
+// A life form that lies, crawls or swims is turned onto its front; one that kneels, sits, squats, crouches or wades is
+// as much lower as its head is then: what of its legs is in the ground is not seen.
+struct Posture {
+  glm::dmat3 ecef_from_body{1.0};
+  double lowered_m = 0;
+};
+Posture PostureOf(const ObjectRecord& record, const glm::dmat3& ecef_from_body);
 
 }  // namespace belvedere

@@ -1,14 +1,17 @@
 #include "managers/object_manager.h"
 
+#include "managers/attachments.h"
 #include "managers/effects.h"
 #include "managers/footing.h"
 #include "managers/group_selection.h"
+#include "managers/instance_groups.h"
 #include "managers/joints.h"
 #include "managers/label_layout.h"
 #include "managers/list_pages.h"
 #include "managers/object_selection.h"
 #include "managers/paced_thread.h"
 #include "managers/shown_objects.h"
+#include "managers/watch_outline.h"
 #include "runtime/base/status.h"
 #include "runtime/base/trace.h"
 #include "runtime/earth/ellipsoid.h"
@@ -30,26 +33,9 @@ namespace {
 
 constexpr double kListsPerSecond = 20.0;
 constexpr double kTypicalRadius_m = 10.0;  // of an object whose model is not in memory
-constexpr double kGroupSide_m = 500e3;     // objects are grouped for culling by cubes of this size
 constexpr double kCoarsestDetail_px = 64;
-constexpr double kGroupLookAhead_s = 0.5;  // a group's volume holds where its objects will be until the next list
-
-// An instance of the list, before it is known which come together.
-struct Candidate {
-  uint64_t group = 0;
-  uint32_t instance = 0;  // index -> instances_
-};
-
-// The cube that a place lies in: 21 bits of each of its numbers.
-uint64_t GroupOf(const glm::dvec3& position_ecef) {
-  constexpr double kMost = 1 << 20;
-  uint64_t group = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double cell = std::clamp(std::floor(position_ecef[axis] / kGroupSide_m) + kMost, 0.0, 2 * kMost - 1);
-    group = group << 21 | static_cast<uint64_t>(cell);
-  }
-  return group;
-}
+constexpr double kLeastAttached_px = 3;
+constexpr double kOutlinesHold_s = 1.0;
 
 uint64_t PackedType(const EntityType& type) {
   return uint64_t{type.kind} << 56 | uint64_t{type.domain} << 48 | uint64_t{type.country} << 32 |
@@ -77,13 +63,18 @@ class ObjectManager::Worker {
   void Step() {
     const std::shared_ptr<const ViewParameters> view = channel_->parameters.Get();
     if (view->number == 0) return;
-    // Without objects the list that says so is enough.
+    // Without objects the list that says so is enough; outlines follow the view, and once a second the ground.
     const auto snapshot = objects_.Snapshot();
     const bool none = (snapshot->objects.empty() && snapshot->events.empty()) || !view->draw_objects;
-    if (none && published_none_) return;
-    published_none_ = none;
-    const TraceSpan span("objects.list");
+    const bool outlines = view->watched != nullptr && !view->watched->empty();
     const double now_s = clock_.NowSeconds();
+    const bool same_view = view->number == still_view_ && now_s < still_until_s_;
+    if (none && published_none_ && (!(outlines || outlined_) || same_view)) return;
+    published_none_ = none;
+    outlined_ = outlines;
+    still_view_ = view->number;
+    still_until_s_ = now_s + kOutlinesHold_s;
+    const TraceSpan span("objects.list");
     DisplayList& list = channel_->object_lists.back();
     list.Clear();
     list.labels.emplace_back();
@@ -93,6 +84,7 @@ class ObjectManager::Worker {
     list.time_s = now_s;
     ListPages pages(paging_, terrain_ != nullptr ? terrain_->type : DataType{0}, list);
     if (view->draw_objects) Build(*view, *snapshot, now_s, pages, list);
+    if (outlines) AddOutlines(*view, now_s, list);
     pages.Finish(view_id_, ListPages::Queues::kObjects);
     list.statistics.pages_waiting = static_cast<uint32_t>(pages.pages_waiting());
     list.statistics.settled = pages.pages_waiting() == 0;
@@ -116,13 +108,13 @@ class ObjectManager::Worker {
     KeepTriangleBudget();
     AddEffects(view, snapshot.events, now_s, list);
     if (view.labels) AddLabels(view, list);
-    Emit(list);
+    placed_.Emit(instances_, list);
     shown_.ForgetOthers(number_);
   }
 
   void Clear() {
     instances_.clear();
-    candidates_.clear();
+    placed_.Clear();
     drawn_models_.clear();
     effect_wishes_.clear();
     wishes_.clear();
@@ -150,7 +142,9 @@ class ObjectManager::Worker {
     instance.ecef_from_body = pose.ecef_from_body;
     if (ModelRotates(record.kinematics.model))
       instance.angular_velocity_body = record.kinematics.angular_velocity_radps;
-    instance.ecef_from_body = PostureOf(record, instance.ecef_from_body);
+    const Posture posture = PostureOf(record, instance.ecef_from_body);
+    instance.position_ecef += posture.lowered_m * instance.ecef_from_body[2];
+    instance.ecef_from_body = posture.ecef_from_body;
     const JointsOf joints = JointsAt(record, now_s);
     instance.joints = joints.pose;
     instance.spin_radps = joints.spin_radps;
@@ -161,11 +155,41 @@ class ObjectManager::Worker {
                       record.id.entity;
     if (show.how == ObjectShow::How::kModel) ChooseModel(model, ModelKey(look.model), show, pages, instance);
     const auto index = static_cast<uint32_t>(instances_.size() - 1);
-    candidates_.push_back({GroupOf(instance.position_ecef), index});
+    placed_.Add(index, instance.position_ecef);
     instance.look.shade = ShadeOfDamage(record.damage());
     WishEffects(record, shown, view, matrices, index, now_s);
     if (view.frames) instance.look.frame = static_cast<uint8_t>(ForceFrame(record.force));
     if (view.labels) WishLabel({&record, &look, index, 1}, FormatOf(view).SizeFor(record), &shown, view, matrices);
+    if (instances_[index].look.model_slot >= 0) Attach(record, *model, show.metre_px, pages, index);
+  }
+
+  // What hangs on an object, each at its station of the model.
+  void Attach(const ObjectRecord& record, const ModelPage& carrier, double metre_px, ListPages& pages, uint32_t index) {
+    for (const AttachedPart& part : record.attached()) {
+      const std::optional<glm::vec3> place = PlaceOfStation(carrier, part.station);
+      const int number = LookOf(part.type).model;
+      if (!place || number < 0) continue;
+      const ModelPage* model = ModelOf(number, pages);
+      const double radius_m = model != nullptr ? model->radius_m : kTypicalRadius_m;
+      const double size_px = 2 * radius_m * metre_px;
+      if (size_px < kLeastAttached_px) continue;
+      ObjectInstance hanging = instances_[index];
+      const glm::dvec3 arm(*place);
+      hanging.position_ecef += hanging.ecef_from_body * arm;
+      hanging.velocity_mps += hanging.ecef_from_body * glm::cross(hanging.angular_velocity_body, arm);
+      hanging.joints = {};
+      hanging.spin_radps = 0;
+      hanging.label = 0;
+      hanging.radius_m = radius_m;
+      hanging.look.model_slot = -1;
+      instances_.push_back(hanging);
+      ChooseModel(model, ModelKey(number), {ObjectShow::How::kModel, size_px, metre_px}, pages, instances_.back());
+      if (instances_.back().look.model_slot < 0) {
+        instances_.pop_back();  // until its model is there
+      } else {
+        placed_.Add(static_cast<uint32_t>(instances_.size() - 1), hanging.position_ecef);
+      }
+    }
   }
 
   // Coarser models, all by the same error on the screen, until they have no more triangles than a view may have.
@@ -199,7 +223,7 @@ class ObjectManager::Worker {
     instance.look.symbol = static_cast<uint8_t>(look.symbol);
     instance.look.frame = static_cast<uint8_t>(ForceFrame(group.key.force));
     const auto index = static_cast<uint32_t>(instances_.size() - 1);
-    candidates_.push_back({GroupOf(instance.position_ecef), index});
+    placed_.Add(index, instance.position_ecef);
     if (view.labels)
       WishLabel({nullptr, &look, index, group.members}, SizeOf(GroupText(group.members)), nullptr, view, matrices);
   }
@@ -276,6 +300,19 @@ class ObjectManager::Worker {
       AddAppearance(wish.seen, wish.record->type, object, object.object, moment, list.effects);
       if (view.trails_s > 0) AddTrail(shown->track, object, now_s, view.trails_s, list.effects);
       if (view.vectors_s > 0) AddVector(wish.record->kinematics, object, now_s, view.vectors_s, list.effects);
+    }
+  }
+
+  void AddOutlines(const ViewParameters& view, double now_s, DisplayList& list) const {
+    const auto height = [&](double latitude_deg, double longitude_deg) {
+      if (terrain_ == nullptr) return 0.0;
+      const auto ground = GroundUnder(paging_, terrain_->type, latitude_deg, longitude_deg);
+      return ground ? ground->height_m : 0.0;
+    };
+    const glm::dvec3 eye_ecef = view.EyeAt(now_s);
+    for (const WatchArea& area : *view.watched) {
+      if (list.effects.size() + kRimPieces > kMostEffects) break;
+      AddOutline(area, eye_ecef, height, list.effects);
     }
   }
 
@@ -377,36 +414,6 @@ class ObjectManager::Worker {
     return StandOn(pose, standing.height_m, standing.normal_ecef);
   }
 
-  // Instances, grouped by place; one culling volume a group.
-  void Emit(DisplayList& list) {
-    std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
-      return a.group != b.group ? a.group < b.group : a.instance < b.instance;
-    });
-    list.instances.reserve(candidates_.size());
-    for (size_t begin = 0; begin < candidates_.size();) {
-      size_t end = begin;
-      glm::dvec3 center(0.0);
-      const auto first = static_cast<uint32_t>(list.instances.size());
-      for (; end < candidates_.size() && candidates_[end].group == candidates_[begin].group; ++end) {
-        list.instances.push_back(instances_[candidates_[end].instance]);
-        center += list.instances.back().position_ecef;
-      }
-      center /= static_cast<double>(end - begin);
-      double radius = 0;
-      for (size_t i = first; i < list.instances.size(); ++i) {
-        const ObjectInstance& instance = list.instances[i];
-        radius = std::max(radius, glm::distance(center, instance.position_ecef) + instance.radius_m +
-                                      kGroupLookAhead_s * glm::length(instance.velocity_mps));
-      }
-      const auto record = static_cast<uint32_t>(list.records.size());
-      list.records.push_back({ListRecord::Kind::kCullBegin, static_cast<uint32_t>(list.volumes.size()), 0, record + 3});
-      list.records.push_back({ListRecord::Kind::kDrawInstances, first, static_cast<uint32_t>(end - begin), 0});
-      list.records.push_back({ListRecord::Kind::kCullEnd, 0, 0, 0});
-      list.volumes.push_back({center, radius});
-      begin = end;
-    }
-  }
-
   const ViewId view_id_;
   Paging& paging_;
   const EntityLooks& looks_;
@@ -416,7 +423,9 @@ class ObjectManager::Worker {
   const Clock& clock_;
   const Layer* const terrain_;
   const Layer* const models_;
-  bool published_none_ = false;
+  bool published_none_ = false, outlined_ = false;
+  uint64_t still_view_ = 0;   // parameters of the last list,
+  double still_until_s_ = 0;  // whose outlines are good until then
   uint64_t number_ = 0;
   ShownObjects shown_;
   GroupSelection groups_;
@@ -425,7 +434,7 @@ class ObjectManager::Worker {
   LabelLayout layout_;
   // Of the list that is being made:
   std::vector<ObjectInstance> instances_;
-  std::vector<Candidate> candidates_;
+  InstanceGroups placed_;
   std::vector<DrawnModel> drawn_models_;
   std::vector<EffectWish> effect_wishes_;
   std::vector<LabelWish> wishes_;

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <limits>
@@ -18,6 +19,7 @@ namespace belvedere {
 namespace {
 
 constexpr unsigned kMostVertices = 4'000'000;
+constexpr size_t kMostStations = 256;
 
 using Colour = std::array<float, 4>;
 
@@ -74,6 +76,22 @@ ModelJoint JointOf(std::string_view node_name) {
   return found == kNames.end() ? ModelJoint::kNone : static_cast<ModelJoint>(found - kNames.begin());
 }
 
+// The number of a node that is a station.
+std::optional<uint16_t> StationOf(std::string_view node_name) {
+  constexpr std::string_view kPrefix = "station_";
+  if (!node_name.starts_with(kPrefix)) return std::nullopt;
+  node_name.remove_prefix(kPrefix.size());
+  uint16_t number = 0;
+  const auto [end, error] = std::from_chars(node_name.data(), node_name.data() + node_name.size(), number);
+  if (error != std::errc{} || end != node_name.data() + node_name.size()) return std::nullopt;
+  return number;
+}
+
+glm::vec3 OriginOf(const aiMatrix4x4& transform) {
+  const aiVector3D origin = ToBody(transform * aiVector3D(0, 0, 0));
+  return {origin.x, origin.y, origin.z};
+}
+
 // Where the vertices of a node go.
 struct Placement {
   aiMatrix4x4 transform;
@@ -111,9 +129,11 @@ bool AppendNode(const aiScene& scene, const aiNode& node, Placement placement, c
   placement.transform = placement.transform * node.mTransformation;
   const ModelJoint joint = JointOf(node.mName.C_Str());
   if (joint != ModelJoint::kNone) {
-    const aiVector3D pivot = ToBody(placement.transform * aiVector3D(0, 0, 0));
-    page.pivots[static_cast<size_t>(joint)] = {pivot.x, pivot.y, pivot.z};
+    page.pivots[static_cast<size_t>(joint)] = OriginOf(placement.transform);
     placement.joint = joint;
+  }
+  if (const auto number = StationOf(node.mName.C_Str()); number && page.stations.size() < kMostStations) {
+    page.stations.push_back({*number, OriginOf(placement.transform)});
   }
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
     const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
@@ -151,6 +171,7 @@ bool ScaleToLength(ModelPage& page, float length_m) {
     page.radius_m = std::max(page.radius_m, std::hypot(vertex.x, vertex.y, vertex.z));
   }
   for (glm::vec3& pivot : page.pivots) pivot *= scale;
+  for (ModelStation& station : page.stations) station.place *= scale;
   return true;
 }
 

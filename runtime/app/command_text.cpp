@@ -173,6 +173,12 @@ const std::map<std::string_view, Form>& Forms() {
         [](const Words& words, const PicturePoint&) { return ParseLayer(words); }}},
       {"target",
        {"target next or target previous", [](const Words& words, const PicturePoint&) { return ParseTarget(words); }}},
+      {"watch",
+       {"watch none",
+        [](const Words& words, const PicturePoint&) -> std::optional<Command> {
+          if (words.size() != 2 || words[1] != "none") return std::nullopt;
+          return ForgetWatchedCommand{};
+        }}},
       {"picture", {"picture", Alone<PictureCommand>()}},
       {"home", {"home", Alone<HomeCommand>()}},
       {"quit", {"quit", Alone<QuitCommand>()}},

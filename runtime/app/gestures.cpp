@@ -2,6 +2,8 @@
 
 #include "runtime/app/command_text.h"
 
+#include <utility>
+
 namespace belvedere {
 namespace {
 
@@ -44,19 +46,24 @@ std::vector<Command> Gestures::TakeKey(const InputEvent& event, int width_px, in
 std::vector<Command> Gestures::TakeButton(const InputEvent& event) {
   const PicturePoint at{event.x, event.y};
   if (!event.pressed) {
-    if (event.button == button_) drag_ = Drag::kNone;
+    if (event.button != button_) return {};
+    const Drag ended = std::exchange(drag_, Drag::kNone);
+    if (ended == Drag::kWatch) return {WatchCommand{began_, at, true}};
     return {};
   }
   if (drag_ != Drag::kNone) return {};
   button_ = event.button;
   began_ = last_ = at;
-  const bool modified = event.modifiers.shift || event.modifiers.control;
   if (event.button == MouseButton::kRight) {
     drag_ = Drag::kOrbit;
     return {};
   }
-  if (event.button == MouseButton::kMiddle || modified) {
+  if (event.button == MouseButton::kMiddle || event.modifiers.shift) {
     drag_ = Drag::kLook;
+    return {};
+  }
+  if (event.modifiers.control) {
+    drag_ = Drag::kWatch;
     return {};
   }
   drag_ = Drag::kPan;
@@ -74,6 +81,7 @@ std::vector<Command> Gestures::TakeMove(const InputEvent& event, int width_px, i
     case Drag::kOrbit: return {OrbitCommand{began_, -right * kOrbitDegreesPerPicture, -down * kOrbitDegreesPerPicture}};
     // The scene follows the cursor: dragging right turns the camera left.
     case Drag::kLook: return {LookCommand{-right, down}};
+    case Drag::kWatch: return {WatchCommand{began_, last_, false}};
   }
   return {};
 }

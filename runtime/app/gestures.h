@@ -3,7 +3,8 @@
 //   left drag           grab and pan the ground under the cursor
 //   wheel               zoom to the cursor, kZoomShare of the distance a click
 //   right drag          orbit about the ground under the cursor where the drag began: around, and tilt
-//   middle drag, or left drag with shift or control held: look around
+//   middle drag, or left drag with shift held: look around
+//   left drag with control held: draws a watch area about where the drag began; a click takes one away
 //   keys                as the KeyMap and FlightKeys say
 //
 // Threads: the UI thread; one for each window.
@@ -25,7 +26,7 @@ class Gestures {
   std::vector<Command> Take(const InputEvent& event, int width_px, int height_px);
 
  private:
-  enum class Drag : uint8_t { kNone, kPan, kOrbit, kLook };
+  enum class Drag : uint8_t { kNone, kPan, kOrbit, kLook, kWatch };
   std::vector<Command> TakeKey(const InputEvent& event, int width_px, int height_px);
   std::vector<Command> TakeButton(const InputEvent& event);
   std::vector<Command> TakeMove(const InputEvent& event, int width_px, int height_px);

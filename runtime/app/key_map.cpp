@@ -19,7 +19,7 @@ constexpr std::pair<std::string_view, std::string_view> kStockKeys[] = {
     {"-", "zoom -1"},        {"KeypadAdd", "zoom 1"},   {"KeypadSubtract", "zoom -1"}, {"[", "error *0.8"},
     {"]", "error *1.25"},    {"PageUp", "orbit 0 5"},   {"PageDown", "orbit 0 -5"},    {",", "time -600"},
     {".", "time +600"},      {"e", "toggle effects"},   {"y", "toggle trails"},        {"v", "toggle vectors"},
-    {"g", "toggle groups"},
+    {"g", "toggle groups"},  {"Delete", "watch none"},
 };
 
 const std::map<std::string, Key>& KeyNames() {

@@ -64,6 +64,9 @@ class Station {
   // Returns when nothing of the view runs any more.
   void RemoveView(ViewId id);
 
+  // From now on groups near these matter more, and no others.
+  void Watch(const std::vector<WatchArea>& areas) { clusters_->Watch(areas); }
+
   // Never under the surface that is drawn; the ellipsoid while nothing is there yet. Valid as long as the station.
   const GroundHeight& ground() const { return ground_; }
   // Lines for the user about what is wrong, at most a few.

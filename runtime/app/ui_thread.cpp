@@ -27,6 +27,7 @@ UiThread::UiThread(const StationSpec& spec, const UiOptions& options, Station& s
       station_(station),
       windows_(windows),
       clock_(clock),
+      watched_(spec.watched),
       start_s_(clock.NowSeconds()),
       utc_at_start_s_(spec.utc_s.value_or(clock.UtcSeconds())),
       last_s_(start_s_) {
@@ -83,6 +84,7 @@ ViewParameters UiThread::ParametersOf(const View& view, double now_s) {
   parameters.exaggeration = spec_.exaggeration;
   parameters.target_frame_ms = spec_.frame_ms;
   parameters.time_rate = spec_.time_rate;
+  parameters.watched = std::make_shared<const std::vector<WatchArea>>(watched_.Shown());
   return parameters;
 }
 
@@ -140,6 +142,14 @@ void UiThread::Do(View& view, const Command& command) {
     for (View& other : views_) other.pilot->Apply(command, station_.ground());
     return;
   }
+  const auto* watch = std::get_if<WatchCommand>(&command);
+  if (watch != nullptr || std::holds_alternative<ForgetWatchedCommand>(command)) {
+    if (watch != nullptr) Watch(view, *watch);
+    if (watch == nullptr) watched_.Clear();
+    station_.Watch(watched_.areas());
+    for (View& other : views_) other.pilot->Apply(command, station_.ground());
+    return;
+  }
   if (const auto* cycle = std::get_if<CycleTargetCommand>(&command)) {
     targets_.Cycle(view.pilot->spec().target_text, *station_.objects().Snapshot(), cycle->by);
   }
@@ -148,6 +158,14 @@ void UiThread::Do(View& view, const Command& command) {
     if (!status.ok()) LogWarning("{}", status.message());
   }
   view.pilot->Apply(command, station_.ground());
+}
+
+void UiThread::Watch(const View& view, const WatchCommand& command) {
+  constexpr double kClick_px = 4;  // a drag that is no longer than that is none
+  const auto under = [&](const PicturePoint& point) { return view.pilot->GroundUnder(point, station_.ground()); };
+  const double dragged_px = std::hypot(command.rim.x_px - command.middle.x_px, command.rim.y_px - command.middle.y_px);
+  if (dragged_px > kClick_px) watched_.Draw(under(command.middle), under(command.rim), command.finished);
+  if (dragged_px <= kClick_px && command.finished) watched_.Remove(under(command.middle));
 }
 
 void UiThread::Advance(double now_s) {

@@ -12,6 +12,7 @@
 #include "runtime/app/station.h"
 #include "runtime/app/target_tracker.h"
 #include "runtime/app/view_pilot.h"
+#include "runtime/app/watched_places.h"
 
 #include <memory>
 #include <optional>
@@ -51,6 +52,7 @@ class UiThread {
   Status OpenView(const WindowSpec& window);
   void TakeEvents(double longest_wait_s);
   void Do(View& view, const Command& command);
+  void Watch(const View& view, const WatchCommand& command);
   void Advance(double now_s);
   void ShowNotices(double now_s);
   Status TakePictures(const std::string& moment);
@@ -64,6 +66,7 @@ class UiThread {
   const Clock& clock_;
   KeyMap keys_;
   TargetTracker targets_;
+  WatchedPlaces watched_;
   std::vector<View> views_;
   std::vector<InputEvent> events_;
   const double start_s_;

@@ -69,6 +69,13 @@ void ViewPilot::Apply(const Command& command, const GroundHeight& ground) {
   }
 }
 
+glm::dvec3 ViewPilot::GroundUnder(const PicturePoint& point, const GroundHeight& ground) const {
+  if (spec_.kind != ViewKind::kOverview) return PointUnder(camera_, lens_, point, ground);
+  Geodetic place = PlaceUnder(overview_, lens_, point);
+  place.height_m = ground(place.latitude_deg, place.longitude_deg);
+  return ToEcef(place);
+}
+
 glm::dvec3 ViewPilot::PivotOf(const OrbitCommand& orbit, const GroundHeight& ground) {
   const bool same = pivot_ && pivot_->first.x_px == orbit.about.x_px && pivot_->first.y_px == orbit.about.y_px;
   if (!same) pivot_.emplace(orbit.about, PointUnder(camera_, lens_, orbit.about, ground));
@@ -170,7 +177,8 @@ void ViewPilot::ApplySwitches(const Command& command) {
   if (const auto* layer = std::get_if<LayerCommand>(&command)) ApplyLayer(*layer);
   if (std::holds_alternative<ToggleCommand>(command) || std::holds_alternative<LayerCommand>(command) ||
       std::holds_alternative<TintCommand>(command) || std::holds_alternative<ErrorBoundCommand>(command) ||
-      std::holds_alternative<ScaleErrorBoundCommand>(command) || std::holds_alternative<AdvanceTimeCommand>(command)) {
+      std::holds_alternative<ScaleErrorBoundCommand>(command) || std::holds_alternative<AdvanceTimeCommand>(command) ||
+      std::holds_alternative<WatchCommand>(command) || std::holds_alternative<ForgetWatchedCommand>(command)) {
     changed_ = true;
   }
 }

@@ -25,6 +25,8 @@ class ViewPilot {
 
   // What a view can do about a command; commands for the whole station (time, target, picture, quit) change nothing.
   void Apply(const Command& command, const GroundHeight& ground);
+  // The ground under a point of the picture, or the limb where it is in the sky.
+  glm::dvec3 GroundUnder(const PicturePoint& point, const GroundHeight& ground) const;
   void Resize(int width_px, int height_px);
   // The camera `seconds` later: flown on, or taken along by the target.
   void Advance(double seconds, const std::optional<Pose>& target, const GroundHeight& ground);

@@ -174,6 +174,13 @@ struct ModelVertex {
   uint8_t joint;                  // ModelJoint
 };
 
+// Where something can be attached to a model. A file names them: nodes "station_640" and the like, with the numbers of
+// SISO-REF-010: 512 and on under the fuselage, 640 the left wing, 768 the right, under 512 the model's own.
+struct ModelStation {
+  uint16_t number = 0;
+  glm::vec3 place{};  // in the body frame
+};
+
 struct ModelPage final : Page {
   // One level of detail: a range of `indices`, 3 a triangle.
   struct Detail {
@@ -185,11 +192,12 @@ struct ModelPage final : Page {
   std::vector<uint32_t> indices;
   std::vector<Detail> details;                   // finest first; at least one
   std::array<glm::vec3, kModelJoints> pivots{};  // of each joint, in the body frame
+  std::vector<ModelStation> stations;            // in the file's order
   float radius_m = 0;                            // of the sphere around the body's origin that holds it
 
   size_t bytes() const override {
     return sizeof(*this) + vertices.capacity() * sizeof(ModelVertex) + indices.capacity() * sizeof(uint32_t) +
-           details.capacity() * sizeof(Detail);
+           details.capacity() * sizeof(Detail) + stations.capacity() * sizeof(ModelStation);
   }
 };
 

@@ -44,6 +44,13 @@ struct OrbitCommand {
 struct LookCommand {
   double right_fraction = 0, up_fraction = 0;
 };
+// A watch area: the circle on the ground about `middle` through `rim`, shown while it is drawn and kept when finished.
+// Where both are all but one point, the watch area that lies there is taken away instead.
+struct WatchCommand {
+  PicturePoint middle, rim;
+  bool finished = true;
+};
+struct ForgetWatchedCommand {};  // takes all of them away
 // How fast to fly from now on, each -1 .. 1 of full speed, until the next FlyCommand.
 struct FlyCommand {
   double forward = 0, right = 0, up = 0;
@@ -99,9 +106,10 @@ struct PictureCommand {};  // writes the view's picture to a file
 struct HomeCommand {};     // back to where the station file put the view
 struct QuitCommand {};
 
-using Command = std::variant<GrabCommand, PanCommand, ZoomCommand, OrbitCommand, LookCommand, FlyCommand, GoToCommand,
-                             CycleTargetCommand, ErrorBoundCommand, ScaleErrorBoundCommand, ToggleCommand, TintCommand,
-                             LayerCommand, AdvanceTimeCommand, PictureCommand, HomeCommand, QuitCommand>;
+using Command =
+    std::variant<GrabCommand, PanCommand, ZoomCommand, OrbitCommand, LookCommand, WatchCommand, ForgetWatchedCommand,
+                 FlyCommand, GoToCommand, CycleTargetCommand, ErrorBoundCommand, ScaleErrorBoundCommand, ToggleCommand,
+                 TintCommand, LayerCommand, AdvanceTimeCommand, PictureCommand, HomeCommand, QuitCommand>;
 
 struct ViewCommand {
   ViewId view = 0;

@@ -314,6 +314,7 @@ void ObjectTable::Accept(Slot slot, const ObjectRecord& record) {
   mine.slot = slot;
   mine.incarnation = incarnation;
   mine.part_count = std::min(mine.part_count, static_cast<uint8_t>(ObjectRecord::kMaxParts));
+  mine.attached_count = std::min(mine.attached_count, static_cast<uint8_t>(ObjectRecord::kMaxParts));
   mine.flags =
       static_cast<uint8_t>((record.flags & kObjectUnknownModel) | PositionFlags(mine.kinematics.position_ecef));
   if (ClampMotion(mine.kinematics)) {

@@ -8,7 +8,7 @@
 //
 // Units:   metres, seconds on the user's Clock::NowSeconds, radians.
 // Threads: all methods from any thread. Reading costs a shared_ptr copy and never waits while a snapshot is built.
-// Owns:    about 350 bytes an object, and as much again for each snapshot that somebody holds.
+// Owns:    about 450 bytes an object, and as much again for each snapshot that somebody holds.
 #pragma once
 
 #include "runtime/base/mutex.h"
@@ -36,6 +36,12 @@ struct ArticulatedPart {
   uint32_t metric() const { return type & 31; }  // 11 azimuth, 13 elevation, ...
 };
 
+// What hangs on an object: a missile under a wing. The station's numbers are those of ModelStation.
+struct AttachedPart {
+  uint16_t station = 0;
+  EntityType type;
+};
+
 // Why a record is not as it was sent.
 enum ObjectFlags : uint8_t {
   kObjectAtEarthCentre = 1,  // no position was given
@@ -51,7 +57,7 @@ inline constexpr double kFarthestObject_m = 1e9;
 uint8_t PositionFlags(const glm::dvec3& ecef);
 
 struct ObjectRecord {
-  static constexpr size_t kMaxParts = 8;  // further ones are left out
+  static constexpr size_t kMaxParts = 8;  // of each sort; further ones are left out
 
   // What is looked at in every record, of every list, comes first: one line of the processor's cache.
   EntityId id;
@@ -59,7 +65,8 @@ struct ObjectRecord {
   uint8_t force = 0;  // 1 friendly, 2 opposing, 3 neutral
   uint8_t flags = 0;  // ObjectFlags
   uint8_t part_count = 0;
-  uint8_t protocol_version = 7;  // of the report, for TimeoutRule
+  uint8_t attached_count = 0;
+  uint8_t protocol_version = 7;  // of the report
   uint32_t slot = 0;             // the table's number for it while it is known, under the capacity;
   uint32_t incarnation = 0;      // with this, which counts all that were ever added, for itself alone
   uint32_t report = 0;           // counts the reports of this object; changes with each
@@ -69,9 +76,11 @@ struct ObjectRecord {
   uint64_t source = 0;  // who reported it: a number of the network's making, equal for one host
   KinematicState kinematics;
   std::array<ArticulatedPart, kMaxParts> part_array{};
+  std::array<AttachedPart, kMaxParts> attached_array{};
 
   bool visible() const { return (flags & kObjectNotVisible) == 0; }
   std::span<const ArticulatedPart> parts() const { return {part_array.data(), part_count}; }
+  std::span<const AttachedPart> attached() const { return {attached_array.data(), attached_count}; }
   uint32_t damage() const { return (appearance >> 3) & 3; }  // 0 none .. 3 destroyed
 };
 

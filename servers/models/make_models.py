@@ -24,6 +24,7 @@ class Model:
         self.materials = {}  # (part, name) -> (rgb, [vertices])
         self.parts = {}  # what moves by itself: name -> (pivot, the part that it hangs under or None)
         self.part = None
+        self.stations = {}  # where something can be attached: number of SISO-REF-010 -> place
 
     def colour(self, name, rgb):
         self.materials.setdefault((self.part, name), (rgb, []))
@@ -36,6 +37,9 @@ class Model:
 
     def end(self):
         self.part = None
+
+    def station(self, number, place):
+        self.stations[number] = place
 
     def triangle(self, out, a, b, c, normals=None):
         if normals is None:
@@ -292,6 +296,13 @@ def fighter():
                                              (-0.9, s * 4.8, 0.05, 0.01, 0.01)], 6)
 
     both(side)
+    # Pylons: two under each wing, one under the fuselage. x is to the left.
+    pylons = m.colour("pylons", GREY)
+    for i, (x, z) in enumerate(((2.1, -0.6), (3.3, -1.5))):
+        for wing_station, s in ((640, 1), (768, -1)):
+            m.box(pylons, s * x - 0.05, s * x + 0.05, -0.3, 0.05, z - 0.8, z + 0.8)
+            m.station(wing_station + i, (s * x, -0.41, z))
+    m.station(512, (0, -1.27, 0.4))
     m.begin("gear", (0, -0.8, 0))
     for x, z in ((0, 3.8), (1.1, -1.6), (-1.1, -1.6)):
         m.box(m.colour("legs", WHITE), x - 0.06, x + 0.06, -1.7, -0.7, z - 0.06, z + 0.06)
@@ -474,6 +485,9 @@ def write_gltf(model, name, path):
         if children:
             node["children"] = children
         nodes.append(node)
+    for number, place in model.stations.items():
+        nodes[0].setdefault("children", []).append(len(nodes))
+        nodes.append({"name": "station_%d" % number, "translation": [round(v, 4) for v in place]})
 
     uri = "data:application/octet-stream;base64," + base64.b64encode(bytes(blob)).decode("ascii")
     document = {

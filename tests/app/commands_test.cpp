@@ -118,6 +118,24 @@ TEST(GesturesTest, RightDragOrbitsAndShiftDragLooks) {
   EXPECT_NEAR(look.up_fraction, 0.1, 1e-9);
 }
 
+TEST(GesturesTest, ControlDragDrawsAWatchArea) {
+  const KeyMap keys;
+  Gestures gestures(keys);
+  InputEvent press = ButtonEvent(MouseButton::kLeft, true, 50, 30);
+  press.modifiers.control = true;
+  EXPECT_TRUE(gestures.Take(press, 100, 60).empty());
+  const auto drawn = std::get<WatchCommand>(gestures.Take(MoveEvent(60, 35), 100, 60).at(0));
+  EXPECT_FALSE(drawn.finished);
+  EXPECT_EQ(drawn.middle.x_px, 50);
+  EXPECT_EQ(drawn.rim.y_px, 35);
+  const auto kept =
+      std::get<WatchCommand>(gestures.Take(ButtonEvent(MouseButton::kLeft, false, 70, 40), 100, 60).at(0));
+  EXPECT_TRUE(kept.finished);
+  EXPECT_EQ(kept.rim.x_px, 70);
+  EXPECT_TRUE(gestures.Take(MoveEvent(80, 40), 100, 60).empty());
+  EXPECT_TRUE(std::holds_alternative<ForgetWatchedCommand>(gestures.Take(KeyEvent(Key::kDelete, true), 100, 60).at(0)));
+}
+
 TEST(GesturesTest, KeysFlyWhileHeldAndTogglesDoNotRepeat) {
   const KeyMap keys;
   Gestures gestures(keys);

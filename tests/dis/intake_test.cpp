@@ -217,6 +217,31 @@ TEST_F(IntakeTest, PartsAreBounded) {
   EXPECT_EQ(table_.Snapshot()->objects[0].parts().size(), ObjectRecord::kMaxParts);
 }
 
+TEST_F(IntakeTest, WhatIsAttachedIsKeptUntilItIsDetached) {
+  const EntityType missile{2, 1, 225, 1, 1, 0, 0};
+  const auto attached = [&](uint8_t version, uint8_t change, uint32_t station, const EntityType& type) {
+    std::vector<uint8_t> bytes = Encoded(SomeEntity());
+    bytes[0] = version;
+    bytes[19] = 1;
+    const auto part = EncodeParameter(
+        {.record_type = VariableParameter::kAttachedPart, .change = change, .part_type = station, .attached = type});
+    bytes.insert(bytes.end(), part.begin(), part.end());
+    bytes[8] = static_cast<uint8_t>(bytes.size() >> 8);
+    bytes[9] = static_cast<uint8_t>(bytes.size());
+    Take(bytes);
+    const std::shared_ptr<const ObjectSnapshot> snapshot = Snapshot();
+    return std::vector<AttachedPart>(snapshot->objects[0].attached().begin(), snapshot->objects[0].attached().end());
+  };
+  const std::vector<AttachedPart> there = attached(7, 0, 641, missile);
+  ASSERT_EQ(there.size(), 1U);
+  EXPECT_EQ(there[0].station, 641);
+  EXPECT_EQ(there[0].type, missile);
+  EXPECT_TRUE(attached(7, 1, 641, missile).empty());       // detached
+  EXPECT_EQ(attached(6, 1, 641, missile).size(), 1U);      // the byte counts changes there
+  EXPECT_TRUE(attached(7, 0, 641, EntityType{}).empty());  // an empty station
+  EXPECT_TRUE(attached(7, 0, 70'000, missile).empty());
+}
+
 TEST(Timestamp, UnitsAndWrap) {
   EXPECT_DOUBLE_EQ(SecondsPastHour(0), 0.0);
   EXPECT_NEAR(SecondsPastHour(0xFFFFFFFF), 3600.0, 2e-6);

@@ -228,15 +228,21 @@ void Models(Gallery& gallery) {
     ObjectRecord helicopter = gallery.At(14, 36, ground_m + 9, {1, 2, 225, 21, 1, 0, 0}, -60, 5);
     helicopter.appearance = 1 << 22 | 3 << 13;
     gallery.Put(helicopter);
+    ObjectRecord fighter = gallery.At(-8, 24, ground_m + 9, kFighter, 250, 160);
+    for (const uint16_t station : {uint16_t{640}, uint16_t{641}, uint16_t{768}, uint16_t{769}, uint16_t{512}}) {
+      fighter.attached_array[fighter.attached_count++] = {station, {2, 1, 225, 1, 1, 0, 0}};
+    }
+    gallery.Put(fighter);
     ObjectRecord airliner = gallery.At(-55, 150, ground_m + 26, kAirliner, 100, 60);
     airliner.appearance = 1 << 25 | 7 << 12;
     gallery.Put(airliner);
     ObjectRecord missile = gallery.At(2, 12, ground_m + 5.5, {2, 1, 225, 1, 1, 0, 0}, 75, 90);
     missile.appearance = 1 << 16 | 1 << 7;
     gallery.Put(missile);
-    for (int i = 0; i < 3; ++i) {
+    const uint32_t postures[] = {1, 4, 1, 5};  // upright, kneeling, upright, prone
+    for (int i = 0; i < 4; ++i) {
       ObjectRecord soldier = gallery.At(1.2 * i, 9.5 + 0.5 * i, ground_m, {3, 1, 225, 1, 0, 0, 0}, 40, 0);
-      soldier.appearance = (i == 2 ? 5u : 1u) << 16;
+      soldier.appearance = postures[i] << 16;
       gallery.Put(soldier);
     }
   };

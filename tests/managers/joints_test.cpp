@@ -66,13 +66,29 @@ TEST(Joints, WhoLiesLies) {
   soldier.type = {3, 1, 225, 1, 0, 0, 0};
   const glm::dmat3 axes(1.0);
   soldier.appearance = 1 << 16;
-  EXPECT_EQ(PostureOf(soldier, axes), axes);
+  EXPECT_EQ(PostureOf(soldier, axes).ecef_from_body, axes);
   soldier.appearance = 5 << 16;
-  const glm::dmat3 lying = PostureOf(soldier, axes);
+  const glm::dmat3 lying = PostureOf(soldier, axes).ecef_from_body;
   EXPECT_EQ(-lying[2], axes[0]);  // head to where it looked
   EXPECT_EQ(lying[0], axes[2]);   // front to the ground
   EXPECT_NEAR(glm::determinant(lying), 1, 1e-12);
-  EXPECT_EQ(PostureOf(Tank(), axes), axes);
+  EXPECT_EQ(PostureOf(Tank(), axes).ecef_from_body, axes);
+}
+
+TEST(Joints, WhoKneelsIsLowerThanWhoCrouches) {
+  ObjectRecord soldier = Tank();
+  soldier.type = {3, 1, 225, 1, 0, 0, 0};
+  const glm::dmat3 axes(1.0);
+  const auto lowered = [&](uint32_t state) {
+    soldier.appearance = state << 16;
+    const Posture posture = PostureOf(soldier, axes);
+    EXPECT_EQ(posture.ecef_from_body, axes);
+    return posture.lowered_m;
+  };
+  EXPECT_EQ(lowered(1), 0);  // upright
+  EXPECT_GT(lowered(12), 0.2);
+  EXPECT_GT(lowered(4), lowered(12));
+  EXPECT_GT(lowered(10), lowered(4));
 }
 
 }  // namespace
