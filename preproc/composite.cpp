@@ -24,9 +24,9 @@ int32_t QuantumOfLevel_mm(Quadcode node) {
   return int32_t{1} << std::clamp(static_cast<int>(std::floor(std::log2(spacing_mm * kSteepest))), 0, kCoarsest);
 }
 
-// or a sixteenth of the step between the heights that a source can tell apart, where that is more.
+// or a quarter of the step between the heights that a source can tell apart, where that is more.
 int32_t QuantumOfSource_mm(double precision_m) {
-  constexpr double kSteps = 16;
+  constexpr double kSteps = 4;
   constexpr int kCoarsest = 10;
   const double quantum_mm = precision_m * 1000.0 / kSteps;
   if (quantum_mm < 1) return 1;
@@ -101,13 +101,17 @@ bool Composite::MayCover(const SourceSampler& sampler, const LatticeRows& lattic
 Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, double spacing_deg, int level, size_t first) {
   const size_t columns = lattice.longitudes_deg.size();
   const size_t count = columns * lattice.latitudes_deg.size();
-  const std::vector<double> undulation = geoid_.Heights(lattice.latitudes_deg, lattice.longitudes_deg);
+  std::vector<double> undulation;  // once something needs it
+  const auto find_undulation = [&] {
+    if (undulation.empty()) undulation = geoid_.Heights(lattice.latitudes_deg, lattice.longitudes_deg);
+  };
   Heights heights{std::vector<double>(count, 0.0), std::vector<int32_t>(count, 0)};
   Remaining remaining(count);
   for (size_t which = first; which < samplers_.size(); ++which) {
     SourceSampler& sampler = samplers_[which];
     if (!MayCover(sampler, lattice)) continue;
     const Samples<double> samples = sampler.Sample<double>(lattice, spacing_deg);
+    if (sampler.source().is_above_sea_level()) find_undulation();
     const std::vector<double> datum_m =
         sampler.source().DatumHeights(lattice.latitudes_deg, lattice.longitudes_deg, undulation);
     const int32_t quantum_mm = QuantumOfSource_mm(sampler.source().precision_m());
@@ -130,6 +134,7 @@ Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, double spaci
     if (used) sampler.source().SetUsed();
     if (!remaining.Any()) return heights;
   }
+  find_undulation();
   for (size_t i = 0; i < count; ++i) heights.metres[i] += static_cast<double>(remaining.shares[i]) * undulation[i];
   return heights;
 }
@@ -173,10 +178,6 @@ std::vector<int32_t> Composite::Heights_mm(Quadcode node) {
 double Composite::HeightAt(double latitude_deg, double longitude_deg, std::span<const PlannedSource> plan) {
   const int level = SourceLevel(plan, Quadcode::Containing(latitude_deg, longitude_deg, kMaxLevel));
   return HeightsAt({{longitude_deg}, {latitude_deg}, {0}}, std::ldexp(kTreeDegrees / kCells, -level), level).metres[0];
-}
-
-std::vector<double> Composite::ProbeHeights(Quadcode node) {
-  return HeightsAt(ProbeLattice(node), node.SizeDegrees() / (2 * kCells), node.level() + 1).metres;
 }
 
 Composite::Colours Composite::ColoursAt(const LatticeRows& lattice, double spacing_deg, size_t first) {

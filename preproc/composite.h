@@ -38,8 +38,6 @@ class Composite {
   std::vector<ColourPair> ColourPairs(size_t place, const LatticeRows& lattice, double spacing_deg);
   // The height, in metres, that the sources have at a place, at the finest level that the plan of them has there.
   double HeightAt(double latitude_deg, double longitude_deg, std::span<const PlannedSource> plan);
-  // The height, in metres, that the sources have at the probes of a node, as if asked for by its children.
-  std::vector<double> ProbeHeights(Quadcode node);
 
  private:
   struct Heights {

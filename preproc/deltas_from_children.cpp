@@ -22,7 +22,7 @@ float OverBase(int32_t height_mm, int32_t base_mm) {
 
 // A child's cells say how far the finest surface is from their triangles, but for the Earth's curvature, which raises
 // it by the sagitta at most. A point takes it from the cells that meet there.
-void WidenByCells(const BoundedPage& child, size_t corner, int64_t sagitta, std::vector<Deviation>& around) {
+void WidenByCells(const BoundedPage& child, size_t corner, int32_t sagitta, std::vector<Deviation>& around) {
   for (size_t row = 0; row < kCells; ++row) {
     for (size_t column = 0; column < kCells; ++column) {
       const Deviation& cell = child.deviations[row * kCells + column];
@@ -52,7 +52,7 @@ FinestSurface FinestUnder(Quadcode node, const std::array<BoundedPage, 4>& child
     const bool is_finest = child.page->deltas.steps.empty();
     if (is_finest) continue;
     const double sagitta_m = CellSagitta(node.Child(static_cast<int>(which)));  // of what is finer than its cells
-    WidenByCells(child, corner, static_cast<int64_t>(std::ceil(sagitta_m / kMetresPerDeviation)), around);
+    WidenByCells(child, corner, static_cast<int32_t>(std::ceil(sagitta_m / kMetresPerDeviation)), around);
   }
   finest.high_m = finest.low_m;
   for (size_t point = 0; point < around.size(); ++point) {

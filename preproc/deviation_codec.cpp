@@ -69,7 +69,11 @@ Result<CellDeviations> DecodeDeviations(std::span<const uint8_t> bytes) {
   if (size != kRawBytes) return Status::Error("deviations of a wrong size");
   CellDeviations deviations(kCount);
   for (size_t cell = 0; cell < kCount; ++cell) {
-    deviations[cell] = {Unzigzag(GetPlanes(raw.data(), cell)), Unzigzag(GetPlanes(raw.data() + kRawBytes / 2, cell))};
+    const int64_t low = Unzigzag(GetPlanes(raw.data(), cell));
+    const int64_t high = Unzigzag(GetPlanes(raw.data() + kRawBytes / 2, cell));
+    deviations[cell] = {static_cast<int32_t>(low), static_cast<int32_t>(high)};
+    if (deviations[cell].low != low || deviations[cell].high != high)
+      return Status::Error("deviations of over a thousand kilometres");
   }
   return deviations;
 }

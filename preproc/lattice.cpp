@@ -95,16 +95,4 @@ std::vector<LatticeRows> TexelLattice(Quadcode node) {
   return groups.Take();
 }
 
-LatticeRows ProbeLattice(Quadcode node) {
-  const GeoBox box = node.Box();
-  const double cell_deg = node.SizeDegrees() / kCells;
-  LatticeRows probes;
-  for (int cell = kProbeFirst; cell < kCells; cell += kProbeStep) {
-    probes.longitudes_deg.push_back(box.west_deg + (cell + 0.5) * cell_deg);
-    probes.latitudes_deg.push_back(box.south_deg + (cell + 0.5) * cell_deg);
-    probes.rows.push_back(cell);
-  }
-  return probes;
-}
-
 }  // namespace belvedere

@@ -28,9 +28,5 @@ std::vector<LatticeRows> PostLattice(Quadcode node);
 LatticeRows PostsAround(Quadcode node, int west, int south, int columns, int rows);
 // kImageSide texels a side.
 std::vector<LatticeRows> TexelLattice(Quadcode node);
-// Centres of every 4th cell between posts, both ways: kCells / 4 a side.
-LatticeRows ProbeLattice(Quadcode node);
-inline constexpr int kProbeStep = 4;
-inline constexpr int kProbeFirst = 1;  // the first cell that is probed
 
 }  // namespace belvedere

@@ -47,27 +47,29 @@ void LayerBuilder::BuildImage(Quadcode node) {
   const std::vector<uint8_t> texels = composites_.local()->Texels(node);
   if (Stopped()) return;
   sink_.Put(number_, node, EncodeImage(texels));
-  CountDone(node);
+  CountDone();
 }
 
 // Nothing where the build is stopped.
 BoundedPage LayerBuilder::BuildElevation(Quadcode node) {
   if (Stopped()) return {};
   if (IsKnown(node)) return TakeElevation(node);
-  auto page = std::make_shared<ElevationPage>();
-  page->heights_mm = composites_.local()->Heights_mm(node);
-  const int source_level = SourceLevel(layer_.plan, node);
-  BoundedPage bounded;
-  const bool is_refined = node.level() < source_level || NeedsRefinement(*page, node, source_level);
-  if (layer_.correction) layer_.correction->Apply(node, page->heights_mm);
-  if (is_refined) {
-    std::array<BoundedPage, 4> finer;
+  std::array<BoundedPage, 4> finer;
+  const bool has_children = node.level() < SourceLevel(layer_.plan, node);
+  if (has_children) {
     tbb::task_group children;
     for (size_t which = 0; which < 4; ++which) {
       children.run([this, node, which, &finer] { finer[which] = BuildElevation(node.Child(static_cast<int>(which))); });
     }
     children.wait();
     if (Stopped()) return {};
+  }
+  // After the children, for the source's pixels that they were made of are at hand now.
+  auto page = std::make_shared<ElevationPage>();
+  page->heights_mm = composites_.local()->Heights_mm(node);
+  if (layer_.correction) layer_.correction->Apply(node, page->heights_mm);
+  BoundedPage bounded;
+  if (has_children) {
     bounded.deviations = BoundPage(*page, &finer);
     page->deltas = DeltasFromChildren(node, *page, finer);
     for (const BoundedPage& child : finer) bounded.depth = std::max(bounded.depth, child.depth + 1);
@@ -77,7 +79,7 @@ BoundedPage LayerBuilder::BuildElevation(Quadcode node) {
   if (Stopped()) return {};
   sink_.Put(number_, node, EncodeElevation(*page),
             bounded.depth >= kDepthWithDeviations ? EncodeDeviations(bounded.deviations) : std::vector<uint8_t>());
-  CountDone(node);
+  CountDone();
   bounded.page = std::move(page);
   return bounded;
 }
@@ -91,24 +93,13 @@ BoundedPage LayerBuilder::TakeElevation(Quadcode node) {
   return {};
 }
 
-bool LayerBuilder::NeedsRefinement(const ElevationPage& page, Quadcode node, int source_level) {
-  if (node.level() >= std::min(source_level + kRefineLevels, kMaxLevel)) return false;
-  const std::vector<double> probes = composites_.local()->ProbeHeights(node);
-  return ShareBeyond(page, probes, RefineTolerance_m(source_level)) > kRefineShare;
-}
-
-// Whether the plan counted it, which knows of no further refinement.
-bool LayerBuilder::IsPlanned(Quadcode node) const {
-  return node.is_root() || node.level() <= SourceLevel(layer_.plan, node.Parent());
-}
-
-void LayerBuilder::CountDone(Quadcode node) {
-  if (progress_ != nullptr && IsPlanned(node)) progress_->Done();
+void LayerBuilder::CountDone() {
+  if (progress_ != nullptr) progress_->Done();
 }
 
 void LayerBuilder::Take(Quadcode node) {
   known_->Take(number_, node);
-  if (progress_ != nullptr && IsPlanned(node)) progress_->Spare(CountNodesUnder(layer_.plan, node));
+  if (progress_ != nullptr) progress_->Spare(CountNodesUnder(layer_.plan, node));
 }
 
 int WorkersOf(int jobs) {

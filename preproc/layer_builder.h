@@ -37,10 +37,8 @@ class LayerBuilder {
   void BuildImage(Quadcode node);
   BoundedPage BuildElevation(Quadcode node);
   BoundedPage TakeElevation(Quadcode node);
-  bool NeedsRefinement(const ElevationPage& page, Quadcode node, int source_level);
   bool IsKnown(Quadcode node) const { return known_ != nullptr && known_->Knows(number_, node); }
-  bool IsPlanned(Quadcode node) const;
-  void CountDone(Quadcode node);
+  void CountDone();
   void Take(Quadcode node);
 
   const int number_;

@@ -20,7 +20,7 @@ namespace belvedere {
 
 // Raised whenever the builder makes other pages of the same sources than it did: pages by two rules do not fit
 // together.
-inline constexpr int kBuilderRules = 1;
+inline constexpr int kBuilderRules = 2;
 
 struct OpenLayer {
   LayerSpec spec;

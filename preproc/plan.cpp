@@ -1,6 +1,5 @@
 #include "preproc/plan.h"
 
-#include "runtime/earth/ellipsoid.h"
 #include "runtime/paging/page.h"
 
 #include <algorithm>
@@ -37,12 +36,6 @@ int FinestLevel(double spacing_deg, LayerKind kind) {
     ++level;
   }
   return level;
-}
-
-double RefineTolerance_m(int source_level) {
-  constexpr double kShareOfSpacing = 1.0 / 12, kMost_m = 50;
-  const double spacing_deg = std::ldexp(kTreeDegrees / kCells, -source_level);
-  return std::min(kShareOfSpacing * spacing_deg * kRadiansPerDegree * kEquatorialRadius_m, kMost_m);
 }
 
 int SourceLevel(std::span<const PlannedSource> sources, Quadcode node) {

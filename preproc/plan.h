@@ -1,8 +1,6 @@
 // Plan: which quadnodes a layer gets, from where its sources lie and how fine they are.
 //
 // Level 0 has all 32 quadnodes. A quadnode has children, all four, where some source that is finer than it overlaps it.
-// Elevation goes up to kRefineLevels further where the terrain is so rough that bilinear interpolation between a page's
-// posts strays from the source (build.cpp asks for that page by page).
 //
 // Threads: pure functions.
 #pragma once
@@ -17,13 +15,6 @@
 #include <vector>
 
 namespace belvedere {
-
-inline constexpr int kRefineLevels = 1;
-// A page is refined where more than this share of its probes is further than the tolerance from the source (decision
-// 0011).
-inline constexpr double kRefineShare = 0.025;
-// For a source of that finest level: a twelfth of the distance of its level's posts, and 50 m at most.
-double RefineTolerance_m(int source_level);
 
 struct PlannedSource {
   GeoBox extent;
@@ -40,7 +31,7 @@ std::vector<size_t> PlacesByResolution(std::span<const PlannedSource> sources);
 int FinestLevel(double spacing_deg, LayerKind kind);
 // The finest level that a source brings to the quadnode, which may be coarser than the quadnode; 0 where there is none.
 int SourceLevel(std::span<const PlannedSource> sources, Quadcode node);
-// Quadnodes of the layer, those of further refinement not counted.
+// Quadnodes of the layer.
 int64_t CountNodes(std::span<const PlannedSource> sources);
 // The same, of the quadnode and those under it. REQUIRES: the plan has the quadnode.
 int64_t CountNodesUnder(std::span<const PlannedSource> sources, Quadcode node);

@@ -75,28 +75,46 @@ std::string StateOf(GDALDataset& dataset, const SourceSpec& spec, const Georefer
                                            extent.south_deg, extent.east_deg, extent.north_deg);
 }
 
+// Blocks of the source that lie under one of that level.
+double CostAt(int pyramid_level) {
+  return std::ldexp(1.0, 2 * pyramid_level);
+}
+
 }  // namespace
+
+void BlockCache::Use(uint64_t key, Entry& entry) {
+  by_worth_.erase({entry.worth, entry.use});
+  entry.worth = let_go_ + entry.cost;
+  entry.use = ++uses_;
+  by_worth_[{entry.worth, entry.use}] = key;
+}
 
 std::shared_ptr<const Block> BlockCache::Find(uint64_t key) {
   const MutexLock lock(mutex_);
-  const auto found = index_.find(key);
-  if (found == index_.end()) return nullptr;
-  entries_.splice(entries_.begin(), entries_, found->second);
-  return found->second->block;
+  const auto found = entries_.find(key);
+  if (found == entries_.end()) return nullptr;
+  Use(key, found->second);
+  return found->second.block;
 }
 
-void BlockCache::Insert(uint64_t key, std::shared_ptr<const Block> block) {
+void BlockCache::Insert(uint64_t key, std::shared_ptr<const Block> block, double cost) {
   std::vector<std::shared_ptr<const Block>> evicted;  // freed after the lock is
   const MutexLock lock(mutex_);
-  if (index_.contains(key)) return;
+  const auto [entry, is_new] = entries_.try_emplace(key);
+  if (!is_new) return;
   bytes_ += block->bytes();
-  entries_.push_front({key, std::move(block)});
-  index_[key] = entries_.begin();
+  entry->second.block = std::move(block);
+  entry->second.cost = cost;
+  Use(key, entry->second);
   while (bytes_ > budget_bytes_ && entries_.size() > 1) {
-    bytes_ -= entries_.back().block->bytes();
-    index_.erase(entries_.back().key);
-    evicted.push_back(std::move(entries_.back().block));
-    entries_.pop_back();
+    auto least = by_worth_.begin();
+    if (least->second == key) ++least;  // somebody is waiting for it
+    const auto out = entries_.find(least->second);
+    let_go_ = std::max(let_go_, least->first.first);
+    bytes_ -= out->second.block->bytes();
+    evicted.push_back(std::move(out->second.block));
+    by_worth_.erase(least);
+    entries_.erase(out);
   }
 }
 
@@ -189,7 +207,8 @@ std::vector<double> RasterSource::DatumHeights(std::span<const double> latitudes
                                                const std::vector<double>& undulation_m) const {
   if (datum_ == VerticalDatum::kEgm96) return undulation_m;
   if (datum_grid_) return datum_grid_->Heights(latitudes_deg, longitudes_deg);
-  return std::vector<double>(undulation_m.size(), datum_ == VerticalDatum::kOffset ? spec_.datum_m : 0.0);
+  const size_t count = latitudes_deg.size() * longitudes_deg.size();
+  return std::vector<double>(count, datum_ == VerticalDatum::kOffset ? spec_.datum_m : 0.0);
 }
 
 uint64_t RasterSource::KeyOf(Plane plane, int pyramid_level, int column, int row) const {
@@ -204,7 +223,7 @@ std::shared_ptr<const Block> RasterSource::GetBlock(int pyramid_level, int colum
   if (auto found = cache_.Find(key)) return found;
   if (pyramid_level == 0) return ReadFromFile(column, row);
   auto block = Shrink(Plane::kPixels, pyramid_level, column, row);
-  cache_.Insert(key, block);
+  cache_.Insert(key, block, CostAt(pyramid_level));
   return block;
 }
 
@@ -212,7 +231,7 @@ std::shared_ptr<const Block> RasterSource::GetDomain(int pyramid_level, int colu
   const uint64_t key = KeyOf(Plane::kDomain, pyramid_level, column, row);
   if (auto found = cache_.Find(key)) return found;
   auto block = pyramid_level == 0 ? DomainOf(column, row) : Shrink(Plane::kDomain, pyramid_level, column, row);
-  cache_.Insert(key, block);
+  cache_.Insert(key, block, CostAt(pyramid_level));
   return block;
 }
 
@@ -282,7 +301,7 @@ std::shared_ptr<const Block> RasterSource::ReadFromFile(int column, int row) {
   for (int at = 0; at < window_width; at += kBlockSide) {
     auto block = std::make_shared<const Block>(CutBlock(window, window_width, window_height, at, kind_));
     const int block_column = (from + at) / kBlockSide;
-    cache_.Insert(KeyOf(Plane::kPixels, 0, block_column, row), block);
+    cache_.Insert(KeyOf(Plane::kPixels, 0, block_column, row), block, CostAt(0));
     if (block_column == column) wanted = std::move(block);
   }
   return wanted;

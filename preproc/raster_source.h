@@ -19,13 +19,14 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <list>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace belvedere {
@@ -40,22 +41,32 @@ struct Block {
   size_t bytes() const { return heights.size() * sizeof(float) + colours.size() + coverage.size(); }
 };
 
-// The blocks of all sources, least recently used first out.
+// The blocks of all sources. Out goes first what was used least recently, but what is dear to make again stays for
+// longer: each block has its cost and what had been let go when it was last used, and the least sum goes. (Cao and
+// Irani 1997, "Cost-aware WWW proxy caching algorithms", GreedyDual-Size.) So the coarse levels of a pyramid, of which
+// each block stands for much of a source, are made once.
 class BlockCache {
  public:
   explicit BlockCache(size_t budget_bytes) : budget_bytes_(budget_bytes) {}
   std::shared_ptr<const Block> Find(uint64_t key) EXCLUDES_LOCK(mutex_);
-  void Insert(uint64_t key, std::shared_ptr<const Block> block) EXCLUDES_LOCK(mutex_);
+  // cost: in blocks of pixels that have to be read to make it again.
+  void Insert(uint64_t key, std::shared_ptr<const Block> block, double cost) EXCLUDES_LOCK(mutex_);
 
  private:
   struct Entry {
-    uint64_t key;
     std::shared_ptr<const Block> block;
+    double cost = 1;
+    double worth = 0;  // goes with the least first,
+    uint64_t use = 0;  // and of equals the one used first
   };
+  void Use(uint64_t key, Entry& entry) REQUIRES_LOCK(mutex_);
+
   const size_t budget_bytes_;
   Mutex mutex_;
-  std::list<Entry> entries_ GUARDED_BY(mutex_);  // most recently used first
-  std::unordered_map<uint64_t, std::list<Entry>::iterator> index_ GUARDED_BY(mutex_);
+  std::unordered_map<uint64_t, Entry> entries_ GUARDED_BY(mutex_);
+  std::map<std::pair<double, uint64_t>, uint64_t> by_worth_ GUARDED_BY(mutex_);  // worth and use -> key
+  double let_go_ GUARDED_BY(mutex_) = 0;                                         // worth of what went last
+  uint64_t uses_ GUARDED_BY(mutex_) = 0;
   size_t bytes_ GUARDED_BY(mutex_) = 0;
 };
 
@@ -85,6 +96,8 @@ class RasterSource {
 
   // What could not be read, if anything: the source is then to be left out.
   Status failure() const EXCLUDES_LOCK(failure_mutex_);
+  // Elevation: whether DatumHeights needs to know of mean sea level.
+  bool is_above_sea_level() const { return datum_ == VerticalDatum::kEgm96; }
   // Elevation: how far above the ellipsoid the source's zero lies, where mean sea level by EGM96 is as far above it as
   // `undulation_m` says: every latitude with every longitude, row by row. NaN where its datum has no value.
   std::vector<double> DatumHeights(std::span<const double> latitudes_deg, std::span<const double> longitudes_deg,

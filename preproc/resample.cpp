@@ -126,6 +126,44 @@ std::vector<Number> ResamplePoints(const PixelWindow& window, const AxisTaps& x,
   return window.channels == 1 ? Points<Number, 2>(window, x, y) : Points<Number, 4>(window, x, y);
 }
 
+template <typename Number>
+void ClampToNearest(const PixelWindow& window, const AxisTaps& x, const AxisTaps& y, bool grid,
+                    std::vector<Number>& values) {
+  constexpr size_t kSize = 2;  // the height and its coverage
+  // The taps begin one before the pixels next to the position.
+  const auto pixel_at = [&](size_t i, size_t j) {
+    const auto row = static_cast<size_t>(y.first[j] + 1 - window.y) * static_cast<size_t>(window.width);
+    return &window.pixels[(row + static_cast<size_t>(x.first[i] + 1 - window.x)) * kSize];
+  };
+  const auto to_north = [&](size_t j) { return y.count[j] > 3 ? static_cast<size_t>(window.width) * kSize : 0; };
+  const auto clamp = [&](size_t i, const float* south, const float* north, Number& value) {
+    const size_t east = x.count[i] > 3 ? kSize : 0;
+    const float low = std::min(std::min(south[0], south[east]), std::min(north[0], north[east]));
+    const float high = std::max(std::max(south[0], south[east]), std::max(north[0], north[east]));
+    value = std::min(std::max(value, static_cast<Number>(low)), static_cast<Number>(high));
+  };
+  if (!grid) {
+    for (size_t i = 0; i < x.first.size(); ++i) {
+      if (x.count[i] == 0 || y.count[i] == 0) continue;
+      const float* south = pixel_at(i, i);
+      clamp(i, south, south + to_north(i), values[i * kSize]);
+    }
+    return;
+  }
+  for (size_t j = 0; j < y.first.size(); ++j) {
+    if (y.count[j] == 0) continue;
+    const size_t north = to_north(j);
+    Number* value = &values[j * x.first.size() * kSize];
+    for (size_t i = 0; i < x.first.size(); ++i, value += kSize) {
+      if (x.count[i] == 0) continue;
+      const float* south = pixel_at(i, j);
+      clamp(i, south, south + north, *value);
+    }
+  }
+}
+
+template void ClampToNearest<float>(const PixelWindow&, const AxisTaps&, const AxisTaps&, bool, std::vector<float>&);
+template void ClampToNearest<double>(const PixelWindow&, const AxisTaps&, const AxisTaps&, bool, std::vector<double>&);
 template std::vector<float> ResampleGrid<float>(const PixelWindow&, const AxisTaps&, const AxisTaps&);
 template std::vector<double> ResampleGrid<double>(const PixelWindow&, const AxisTaps&, const AxisTaps&);
 template std::vector<float> ResamplePoints<float>(const PixelWindow&, const AxisTaps&, const AxisTaps&);

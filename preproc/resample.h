@@ -48,4 +48,11 @@ std::vector<Number> ResampleGrid(const PixelWindow& window, const AxisTaps& x, c
 template <typename Number>
 std::vector<Number> ResamplePoints(const PixelWindow& window, const AxisTaps& x, const AxisTaps& y);
 
+// Of heights that a cubic that is not widened has made: keeps each between the lowest and the highest of the four
+// pixels around its position, so that it does not swing over at cliffs and shores. grid: as of ResampleGrid, else of
+// ResamplePoints.
+template <typename Number>
+void ClampToNearest(const PixelWindow& window, const AxisTaps& x, const AxisTaps& y, bool grid,
+                    std::vector<Number>& values);
+
 }  // namespace belvedere

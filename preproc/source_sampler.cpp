@@ -104,6 +104,17 @@ bool SourceSampler::IsOnSource(const Positions& positions, size_t columns, size_
   return !std::isnan(positions.x[separable ? i % columns : i]) && !std::isnan(positions.y[separable ? i / columns : i]);
 }
 
+void SourceSampler::CopyPixels(const Block& block, size_t at, size_t count, Plane plane, float* out) const {
+  const bool has_heights = plane == Plane::kPixels && kind_ == LayerKind::kElevation;
+  const bool has_colours = plane == Plane::kPixels && !has_heights;
+  for (size_t i = at; i < at + count; ++i, out += channels_ + 1) {
+    const float coverage = static_cast<float>(block.coverage[i]) / 255.0f;
+    if (has_heights) out[0] = block.heights[i] * coverage;
+    for (size_t c = 0; has_colours && c < 3; ++c) out[c] = static_cast<float>(block.colours[3 * i + c]) * coverage;
+    out[channels_] = coverage;
+  }
+}
+
 PixelWindow SourceSampler::MakeWindow(int pyramid_level, const AxisTaps& x, const AxisTaps& y, Plane plane) const {
   PixelWindow window{x.lowest, y.lowest, x.length, y.length, channels_, {}};
   const size_t size = channels_ + 1;
@@ -116,7 +127,7 @@ PixelWindow SourceSampler::MakeWindow(int pyramid_level, const AxisTaps& x, cons
   float* out = window.pixels.data();
   for (int j = 0; j < window.height; ++j) {
     const int row = std::clamp(window.y + j, 0, height - 1);
-    for (int i = 0; i < window.width; ++i, out += size) {
+    for (int i = 0; i < window.width;) {
       const int wanted = window.x + i;
       const int column = wraps ? ((wanted % width) + width) % width : std::clamp(wanted, 0, width - 1);
       if (column / kBlockSide != block_column || row / kBlockSide != block_row) {
@@ -125,14 +136,14 @@ PixelWindow SourceSampler::MakeWindow(int pyramid_level, const AxisTaps& x, cons
         block = plane == Plane::kPixels ? source_.GetBlock(pyramid_level, block_column, block_row)
                                         : source_.GetDomain(pyramid_level, block_column, block_row);
       }
+      // As many of the row as lie side by side in the block.
+      const bool is_beside = wraps || (wanted >= 0 && wanted < width);
+      const int there = std::min(kBlockSide - column % kBlockSide, width - column);
+      const int run = is_beside ? std::min(there, window.width - i) : 1;
       const auto at = static_cast<size_t>(row % kBlockSide * kBlockSide + column % kBlockSide);
-      const float coverage = static_cast<float>(block->coverage[at]) / 255.0f;
-      if (plane == Plane::kPixels && kind_ == LayerKind::kElevation) {
-        out[0] = block->heights[at] * coverage;
-      } else if (plane == Plane::kPixels) {
-        for (size_t c = 0; c < 3; ++c) out[c] = static_cast<float>(block->colours[3 * at + c]) * coverage;
-      }
-      out[channels_] = coverage;
+      CopyPixels(*block, at, static_cast<size_t>(run), plane, out);
+      out += static_cast<size_t>(run) * size;
+      i += run;
     }
   }
   return window;
@@ -150,7 +161,28 @@ std::vector<Number> SourceSampler::Filter(const Positions& positions, const Scal
     return std::vector<Number>(count * (channels_ + 1));
   }
   const PixelWindow window = MakeWindow(scale.pyramid_level, x, y, plane);
-  return separable ? ResampleGrid<Number>(window, x, y) : ResamplePoints<Number>(window, x, y);
+  std::vector<Number> filtered = separable ? ResampleGrid<Number>(window, x, y) : ResamplePoints<Number>(window, x, y);
+  if (kind_ == LayerKind::kElevation && kernel == Kernel::kCubic) ClampToNearest(window, x, y, separable, filtered);
+  return filtered;
+}
+
+// A cubic where all its pixels have heights, bilinear where some have none; averages where the source is finer.
+template <typename Number>
+std::vector<Number> SourceSampler::FilterHeights(const Positions& positions, const Scale& scale) const {
+  if (scale.shrink_x > 1 || scale.shrink_y > 1) return Filter<Number>(positions, scale, Kernel::kTent, Plane::kPixels);
+  std::vector<Number> heights = Filter<Number>(positions, scale, Kernel::kCubic, Plane::kPixels);
+  const auto is_whole = [&](size_t at) {
+    const auto coverage = static_cast<float>(heights[at + 1]);
+    return coverage == 0 || std::abs(1 - coverage) < 1 - kWhole;
+  };
+  std::vector<Number> bilinear;
+  for (size_t at = 0; at < heights.size(); at += 2) {
+    if (is_whole(at)) continue;
+    if (bilinear.empty()) bilinear = Filter<Number>(positions, scale, Kernel::kTent, Plane::kPixels);
+    heights[at] = bilinear[at];
+    heights[at + 1] = bilinear[at + 1];
+  }
+  return heights;
 }
 
 void SourceSampler::FindVoids(const Positions& positions, const Scale& scale, std::span<const float> weights,
@@ -179,7 +211,8 @@ Samples<Number> SourceSampler::Sample(const LatticeRows& lattice, double spacing
     while (end < all_rows && (georeference_->separable() || ScaleAt(lattice.latitudes_deg[end], spacing_deg) == scale))
       ++end;
     const Positions positions = PositionsOf(lattice, row, end - row);
-    const auto filtered = Filter<Number>(positions, scale, heights ? Kernel::kTent : Kernel::kCubic, Plane::kPixels);
+    const std::vector<Number> filtered = heights ? FilterHeights<Number>(positions, scale)
+                                                 : Filter<Number>(positions, scale, Kernel::kCubic, Plane::kPixels);
     const size_t base = row * columns;
     const size_t count = (end - row) * columns;
     bool missing = false;

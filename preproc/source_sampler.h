@@ -56,9 +56,13 @@ class SourceSampler {
   static std::vector<double> AxisAtLevel(std::vector<double> axis, int pyramid_level);
   bool IsOnSource(const Positions& positions, size_t columns, size_t i) const;
   enum class Plane { kPixels, kDomain };  // of the domain the coverage alone
+  // Pixels of a block from `at` on, as a window has them.
+  void CopyPixels(const Block& block, size_t at, size_t count, Plane plane, float* out) const;
   PixelWindow MakeWindow(int pyramid_level, const AxisTaps& x, const AxisTaps& y, Plane plane) const;
   template <typename Number>
   std::vector<Number> Filter(const Positions& positions, const Scale& scale, Kernel kernel, Plane plane) const;
+  template <typename Number>
+  std::vector<Number> FilterHeights(const Positions& positions, const Scale& scale) const;
   // Sets weights, one a position, to 1 where the position lies in a void and no height is.
   void FindVoids(const Positions& positions, const Scale& scale, std::span<const float> weights,
                  std::span<float> void_weights) const;

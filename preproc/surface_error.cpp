@@ -1,7 +1,5 @@
 #include "preproc/surface_error.h"
 
-#include "preproc/lattice.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -9,17 +7,6 @@
 
 namespace belvedere {
 namespace {
-
-// Twice the height of the parent's triangles at half-post (u, v): a post, the middle of an edge or of a diagonal.
-int64_t TwiceHeight(const ElevationPage& page, int u, int v) {
-  const int i = u / 2;
-  const int j = v / 2;
-  if (u % 2 == 0 && v % 2 == 0) return 2 * int64_t{page.at(i, j)};
-  if (v % 2 == 0) return int64_t{page.at(i, j)} + page.at(i + 1, j);
-  if (u % 2 == 0) return int64_t{page.at(i, j)} + page.at(i, j + 1);
-  if ((i + j) % 2 == 0) return int64_t{page.at(i, j)} + page.at(i + 1, j + 1);
-  return int64_t{page.at(i + 1, j)} + page.at(i, j + 1);
-}
 
 // The nearest floats that are not inside of the value.
 float RoundedUp(double value) {
@@ -31,35 +18,47 @@ float RoundedDown(double value) {
   return -RoundedUp(-value);
 }
 
-// Heights of the child over the parent's triangles at its posts, twice, millimetres.
-std::vector<int64_t> TwiceOverParent(const ElevationPage& parent, const ElevationPage& child, int which) {
-  const int west = which % 2 * kCells;
-  const int south = which / 2 * kCells;
-  std::vector<int64_t> over;
-  over.reserve(static_cast<size_t>(kPosts) * kPosts);
-  for (int row = 0; row < kPosts; ++row) {
-    for (int column = 0; column < kPosts; ++column) {
-      over.push_back(2 * int64_t{child.at(column, row)} - TwiceHeight(parent, west + column, south + row));
-    }
+using ChildRow = std::array<int32_t, kPosts>;  // half-millimetres, at a child's posts
+
+// Heights of the child `which` over the parent's triangles at its posts of that row: posts of the parent, middles of
+// edges and, by turns, of diagonals that rise and fall.
+void FillOverParent(const ElevationPage& parent, const ElevationPage& child, int which, int row, ChildRow& over) {
+  const int first = which % 2 * kCells / 2;
+  const int v = which / 2 * kCells + row;  // half-posts of the parent
+  const auto row_of = [](const ElevationPage& page, int column, int at) {
+    return &page.heights_mm[static_cast<size_t>((at + kApron) * kElevationSide + column + kApron)];
+  };
+  const int32_t* own = row_of(child, 0, row);
+  const int32_t* south = row_of(parent, first, v / 2);
+  const int32_t* north = v % 2 == 0 ? south : row_of(parent, first, v / 2 + 1);
+  for (int i = 0; i < kCells / 2; ++i) {
+    over[static_cast<size_t>(2 * i)] = 2 * own[2 * i] - south[i] - north[i];
+    const bool rises = (first + i + v / 2) % 2 == 0;
+    const int32_t middle = rises ? south[i] + north[i + 1] : south[i + 1] + north[i];
+    over[static_cast<size_t>(2 * i + 1)] = 2 * own[2 * i + 1] - middle;
   }
-  return over;
+  over[kCells] = 2 * own[kCells] - south[kCells / 2] - north[kCells / 2];
 }
 
 // Widens the cells of the parent by what lies under them in the child `which`, cell by cell of the child.
 void AddChild(const ElevationPage& parent, const BoundedPage& child, int which, CellDeviations& parents) {
-  const std::vector<int64_t> over = TwiceOverParent(parent, *child.page, which);
-  const int west = which % 2 * kCells;
-  const int south = which / 2 * kCells;
-  for (int row = 0; row < kCells; ++row) {
-    for (int column = 0; column < kCells; ++column) {
-      const auto corner = static_cast<size_t>(row * kPosts + column);
-      const auto [lowest, highest] =
-          std::minmax({over[corner], over[corner + 1], over[corner + kPosts], over[corner + kPosts + 1]});
-      const Deviation& own = child.deviations[static_cast<size_t>(row * kCells + column)];
-      Deviation& cell = parents[static_cast<size_t>((south + row) / 2 * kCells + (west + column) / 2)];
-      cell.low = std::min(cell.low, own.low + lowest);
-      cell.high = std::max(cell.high, own.high + highest);
+  ChildRow south, north, lowest, highest;
+  FillOverParent(parent, *child.page, which, 0, south);
+  for (size_t row = 0; row < kCells; ++row) {
+    FillOverParent(parent, *child.page, which, static_cast<int>(row) + 1, north);
+    for (size_t i = 0; i < kPosts; ++i) {
+      lowest[i] = std::min(south[i], north[i]);
+      highest[i] = std::max(south[i], north[i]);
     }
+    const Deviation* own = &child.deviations[row * kCells];
+    const size_t first =
+        (static_cast<size_t>(which) / 2 * kCells + row) / 2 * kCells + static_cast<size_t>(which) % 2 * kCells / 2;
+    for (size_t column = 0; column < kCells; ++column) {
+      Deviation& cell = parents[first + column / 2];
+      cell.low = std::min(cell.low, own[column].low + std::min(lowest[column], lowest[column + 1]));
+      cell.high = std::max(cell.high, own[column].high + std::max(highest[column], highest[column + 1]));
+    }
+    std::swap(south, north);
   }
 }
 
@@ -79,7 +78,7 @@ CellDeviations BoundPage(ElevationPage& page, const std::array<BoundedPage, 4>* 
   page.block_errors_m.fill(0);
   CellDeviations deviations(static_cast<size_t>(kCells) * kCells);
   if (children == nullptr) return deviations;
-  deviations.assign(deviations.size(), {std::numeric_limits<int64_t>::max(), std::numeric_limits<int64_t>::min()});
+  deviations.assign(deviations.size(), {std::numeric_limits<int32_t>::max(), std::numeric_limits<int32_t>::min()});
   for (size_t which = 0; which < children->size(); ++which) {
     const BoundedPage& child = (*children)[which];
     page.min_m = std::min(page.min_m, child.page->min_m);
@@ -94,18 +93,6 @@ CellDeviations BoundPage(ElevationPage& page, const std::array<BoundedPage, 4>* 
     page.error_m = std::max(page.error_m, error);
   }
   return deviations;
-}
-
-double ShareBeyond(const ElevationPage& page, const std::vector<double>& probe_heights_m, double tolerance_m) {
-  size_t probe = 0, beyond = 0;
-  for (int row = kProbeFirst; row < kCells; row += kProbeStep) {
-    for (int column = kProbeFirst; column < kCells; column += kProbeStep) {
-      const double sum = static_cast<double>(page.at(column, row)) + page.at(column + 1, row) +
-                         page.at(column, row + 1) + page.at(column + 1, row + 1);
-      if (std::abs(sum / 4000.0 - probe_heights_m[probe++]) > tolerance_m) ++beyond;
-    }
-  }
-  return static_cast<double>(beyond) / static_cast<double>(probe);
 }
 
 }  // namespace belvedere

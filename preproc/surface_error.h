@@ -22,7 +22,7 @@ namespace belvedere {
 // between those of the one above. Both sides are kept apart until the page is stored: what one level adds and the next
 // takes away must not count twice.
 struct Deviation {
-  int64_t low = 0, high = 0;
+  int32_t low = 0, high = 0;
 };
 inline constexpr double kMetresPerDeviation = 0.0005;
 using CellDeviations = std::vector<Deviation>;  // kCells^2
@@ -37,8 +37,5 @@ struct BoundedPage {
 // Fills min_m, max_m, block_errors_m and error_m of a page: over its posts, and all that is finer where there are
 // children (all four). Returns the deviations of its cells: none of where nothing is finer.
 CellDeviations BoundPage(ElevationPage& page, const std::array<BoundedPage, 4>* children);
-
-// The share of probes (ProbeLattice) that lie further than tolerance_m from the page's bilinear surface.
-double ShareBeyond(const ElevationPage& page, const std::vector<double>& probe_heights_m, double tolerance_m);
 
 }  // namespace belvedere

@@ -91,35 +91,39 @@ ObjectPass::ObjectPass(const GpuPages& pages)
   glVertexArrayBindingDivisor(array, 1, 1);
 }
 
-uint32_t ObjectPass::Draw(const DisplayList& list, std::span<const MovedObject> objects, const ViewParameters& view,
-                          const ViewMatrices& matrices, const glm::dvec3& sun_ecef, double since_list_s) {
+void ObjectPass::Place(const DisplayList& list, std::span<const MovedObject> objects, const ViewParameters& view,
+                       const ViewMatrices& matrices, const glm::dvec3& sun_ecef, double since_list_s) {
+  batches_.clear();
   const std::vector<Drawn> drawn = Group(list, objects, view, pages_);
-  if (drawn.empty()) return 0;
+  if (drawn.empty()) return;
   std::vector<InstanceRow> rows;
   rows.reserve(drawn.size());
   for (const Drawn& one : drawn) {
+    if (batches_.empty() || batches_.back().slot != one.slot || batches_.back().detail != one.detail)
+      batches_.push_back({one.slot, one.detail, static_cast<GLuint>(rows.size()), 0});
+    ++batches_.back().count;
     rows.push_back(RowOf(list.instances[one.object->instance], *one.object, matrices, sun_ecef, since_list_s));
   }
   glNamedBufferData(instances_.get(), static_cast<GLsizeiptr>(rows.size() * sizeof(InstanceRow)), rows.data(),
                     GL_STREAM_DRAW);
+}
+
+uint32_t ObjectPass::Draw() const {
+  if (batches_.empty()) return 0;
   glUseProgram(program_.get());
   glBindVertexArray(vertex_array_.get());
   glVertexArrayVertexBuffer(vertex_array_.get(), 1, instances_.get(), 0, sizeof(InstanceRow));
   uint32_t triangles = 0;
-  for (size_t first = 0; first < drawn.size();) {
-    size_t end = first;
-    while (end < drawn.size() && drawn[end].slot == drawn[first].slot && drawn[end].detail == drawn[first].detail)
-      ++end;
-    const GpuModel& model = pages_.model(drawn[first].slot);
-    const ModelPage::Detail& detail = model.details[drawn[first].detail];
+  for (const Batch& batch : batches_) {
+    const GpuModel& model = pages_.model(batch.slot);
+    const ModelPage::Detail& detail = model.details[batch.detail];
     glUniform3fv(kPivotsUniform, static_cast<GLsizei>(kModelJoints), &model.pivots[0].x);
     glVertexArrayVertexBuffer(vertex_array_.get(), 0, model.vertices.get(), 0, sizeof(ModelVertex));
     glVertexArrayElementBuffer(vertex_array_.get(), model.indices.get());
     glDrawElementsInstancedBaseInstance(GL_TRIANGLES, static_cast<GLsizei>(detail.index_count), GL_UNSIGNED_INT,
                                         reinterpret_cast<const void*>(detail.first_index * sizeof(uint32_t)),
-                                        static_cast<GLsizei>(end - first), static_cast<GLuint>(first));
-    triangles += detail.index_count / 3 * static_cast<uint32_t>(end - first);
-    first = end;
+                                        batch.count, batch.first);
+    triangles += detail.index_count / 3 * static_cast<uint32_t>(batch.count);
   }
   return triangles;
 }

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 namespace belvedere {
 
@@ -20,12 +21,24 @@ class ObjectPass {
  public:
   explicit ObjectPass(const GpuPages& pages);
 
-  // Returns the triangles drawn. REQUIRES: the view's block is bound.
-  uint32_t Draw(const DisplayList& list, std::span<const MovedObject> objects, const ViewParameters& view,
-                const ViewMatrices& matrices, const glm::dvec3& sun_ecef, double since_list_s);
+  // Puts the objects where they are drawn from now on.
+  void Place(const DisplayList& list, std::span<const MovedObject> objects, const ViewParameters& view,
+             const ViewMatrices& matrices, const glm::dvec3& sun_ecef, double since_list_s);
+  // Draws those placed last; returns their triangles. REQUIRES: the view's block is bound; their models are still
+  // there.
+  uint32_t Draw() const;
 
  private:
+  // Instances of one model and level of detail.
+  struct Batch {
+    int slot = 0;
+    size_t detail = 0;
+    GLuint first = 0;
+    GLsizei count = 0;
+  };
+
   const GpuPages& pages_;
+  std::vector<Batch> batches_;
   GlProgram program_;
   GlVertexArray vertex_array_;
   GlBuffer instances_;

@@ -94,11 +94,11 @@ OverlayPass::OverlayPass(const Atlas& atlas)
   }
 }
 
-void OverlayPass::Draw(const OverlayBatch& batch) {
-  const size_t quads = batch.vertices().size() / 4;
-  if (quads == 0) return;
-  if (quads > indexed_quads_) {
-    indexed_quads_ = 2 * quads;
+void OverlayPass::Place(const OverlayBatch& batch) {
+  quads_ = batch.vertices().size() / 4;
+  if (quads_ == 0) return;
+  if (quads_ > indexed_quads_) {
+    indexed_quads_ = 2 * quads_;
     std::vector<uint32_t> indices;
     indices.reserve(6 * indexed_quads_);
     for (uint32_t quad = 0; quad < indexed_quads_; ++quad) {
@@ -109,6 +109,10 @@ void OverlayPass::Draw(const OverlayBatch& batch) {
   }
   glNamedBufferData(vertices_.get(), static_cast<GLsizeiptr>(batch.vertices().size() * sizeof(OverlayBatch::Vertex)),
                     batch.vertices().data(), GL_STREAM_DRAW);
+}
+
+void OverlayPass::Draw() const {
+  if (quads_ == 0) return;
   glUseProgram(program_.get());
   glBindVertexArray(vertex_array_.get());
   glBindTextureUnit(2, texture_.get());
@@ -116,7 +120,7 @@ void OverlayPass::Draw(const OverlayBatch& batch) {
   glEnable(GL_BLEND);
   glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
   glDepthMask(GL_FALSE);
-  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * quads), GL_UNSIGNED_INT, nullptr);
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(6 * quads_), GL_UNSIGNED_INT, nullptr);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
   glEnable(GL_CULL_FACE);

@@ -50,8 +50,10 @@ class OverlayBatch {
 class OverlayPass {
  public:
   explicit OverlayPass(const Atlas& atlas);
+  // What is drawn from now on.
+  void Place(const OverlayBatch& batch);
   // REQUIRES: the view's block is bound; depth test GL_GEQUAL.
-  void Draw(const OverlayBatch& batch);
+  void Draw() const;
 
  private:
   GlProgram program_;
@@ -59,6 +61,7 @@ class OverlayPass {
   GlBuffer vertices_, indices_;
   GlTexture texture_;
   size_t indexed_quads_ = 0;
+  size_t quads_ = 0;
 };
 
 }  // namespace belvedere

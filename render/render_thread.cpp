@@ -177,11 +177,11 @@ std::future<Result<Picture>> RenderThread::Capture(ViewId id, Renderer::Moment m
   return picture;
 }
 
-std::future<std::vector<double>> RenderThread::Redraw(ViewId id, int times) {
+std::future<std::vector<double>> RenderThread::Redraw(ViewId id, int times, bool still) {
   auto promise = std::make_shared<std::promise<std::vector<double>>>();
   std::future<std::vector<double>> draw_ms = promise->get_future();
-  loop_->Give([id, times, promise](Renderer* renderer) {
-    promise->set_value(renderer != nullptr ? renderer->Redraw(id, times) : std::vector<double>{});
+  loop_->Give([id, times, still, promise](Renderer* renderer) {
+    promise->set_value(renderer != nullptr ? renderer->Redraw(id, times, still) : std::vector<double>{});
   });
   return draw_ms;
 }

@@ -46,7 +46,7 @@ class RenderThread {
 
   // See Renderer::Capture and Redraw.
   std::future<Result<Picture>> Capture(ViewId id, Renderer::Moment moment);
-  std::future<std::vector<double>> Redraw(ViewId id, int times);
+  std::future<std::vector<double>> Redraw(ViewId id, int times, bool still = false);
   void SetNotices(std::vector<std::string> notices);
 
   // What frames cost since the last call, oldest first.

@@ -225,7 +225,8 @@ bool Renderer::DrawFrame(FrameRecorder& recorder, Context& context) {
   return true;
 }
 
-Renderer::Drawn Renderer::DrawView(View& view, const ViewParameters& parameters, double now_s, double clock_now_s) {
+Renderer::Drawn Renderer::DrawView(View& view, const ViewParameters& parameters, double now_s, double clock_now_s,
+                                   Objects how) {
   const DisplayList& terrain = view.channel->terrain_lists.front();
   const DisplayList& objects = view.channel->object_lists.front();
   const double since_list_s = clock_now_s - terrain.time_s;
@@ -246,26 +247,29 @@ Renderer::Drawn Renderer::DrawView(View& view, const ViewParameters& parameters,
     if (parameters.volumes) volumes_.Draw(terrain, view.matrices);
     drawn = {view.visible.triangles, static_cast<uint32_t>(view.visible.terrain.size())};
   }
-  view.overlay.Clear();
-  if (view.has_objects && parameters.draw_objects) {
+  const bool has_objects = view.has_objects && parameters.draw_objects;
+  if (how == Objects::kMoved) view.overlay.Clear();
+  if (has_objects && how == Objects::kMoved) {
     WalkList(objects, view.matrices, view.visible_objects);
     const std::vector<MovedObject> moved =
         MoveObjects(objects, view.visible_objects.instances, parameters, view.matrices, now_s);
     const double since_objects_s = std::clamp(now_s - objects.time_s, 0.0, kLongestExtrapolation_s);
-    drawn.triangles += objects_.Draw(objects, moved, parameters, view.matrices, sun_ecef, since_objects_s);
+    objects_.Place(objects, moved, parameters, view.matrices, sun_ecef, since_objects_s);
     AddObjectOverlay(objects, moved, parameters, view.matrices, view.overlay);
   }
+  if (has_objects) drawn.triangles += objects_.Draw();
   if (parameters.sky) sky_.Draw();
-  if (view.has_objects && parameters.draw_objects) {
+  if (has_objects) {
     effects_.Draw(objects, parameters, view.matrices, sun_ecef,
                   std::clamp(now_s - objects.time_s, 0.0, kLongestExtrapolation_s));
   }
-  DrawOverlay(view, parameters, now_s);
+  if (how == Objects::kMoved) PlaceOverlay(view, parameters, now_s);
+  overlay_.Draw();
   view.target.Resolve();
   return drawn;
 }
 
-void Renderer::DrawOverlay(View& view, const ViewParameters& parameters, double now_s) {
+void Renderer::PlaceOverlay(View& view, const ViewParameters& parameters, double now_s) {
   if (parameters.hud) {
     if (now_s - view.hud_s >= kHudRefresh_s) {
       view.hud_s = now_s;
@@ -293,7 +297,7 @@ void Renderer::DrawOverlay(View& view, const ViewParameters& parameters, double 
     }
     view.overlay.Append(view.hud);
   }
-  overlay_.Draw(view.overlay);
+  overlay_.Place(view.overlay);
 }
 
 bool Renderer::IsSettled(const View& view, const ViewParameters& parameters, double clock_now_s) {
@@ -377,13 +381,15 @@ Picture Renderer::ReadBack(const View& view, const ViewParameters& parameters, c
   return picture;
 }
 
-std::vector<double> Renderer::Redraw(ViewId id, int times) {
+std::vector<double> Renderer::Redraw(ViewId id, int times, bool still) {
   std::vector<double> draw_ms;
   View* view = Find(id);
   if (view == nullptr || !view->parameters) return draw_ms;
+  // Another view may have placed its objects since.
+  if (still) DrawView(*view, *view->parameters, view->drawn_s, view->drawn_s);
   for (int i = 0; i < times; ++i) {
     const double start_s = clock_.NowSeconds();
-    DrawView(*view, *view->parameters, view->drawn_s, view->drawn_s);
+    DrawView(*view, *view->parameters, view->drawn_s, view->drawn_s, still ? Objects::kStill : Objects::kMoved);
     in_flight_.EndFrame();
     draw_ms.push_back((clock_.NowSeconds() - start_s) * 1000);
   }

@@ -67,7 +67,8 @@ class Renderer {
   Result<Picture> Capture(ViewId id, Moment moment);
 
   // Draws the lists of the last frame `times` over, at its moment, with no uploads; what each took, milliseconds.
-  std::vector<double> Redraw(ViewId id, int times);
+  // still: from the same buffers, objects neither moved nor placed anew.
+  std::vector<double> Redraw(ViewId id, int times, bool still = false);
 
   // Lines that the heads-up displays show under their own, such as pages that failed.
   void SetNotices(std::vector<std::string> notices);
@@ -90,8 +91,10 @@ class Renderer {
   static bool IsSettled(const View& view, const ViewParameters& parameters, double clock_now_s);
   void UploadPages();
   // now_s: of the view; clock_now_s: how far the surface is on its way.
-  Drawn DrawView(View& view, const ViewParameters& parameters, double now_s, double clock_now_s);
-  void DrawOverlay(View& view, const ViewParameters& parameters, double now_s);
+  enum class Objects { kMoved, kStill };
+  Drawn DrawView(View& view, const ViewParameters& parameters, double now_s, double clock_now_s,
+                 Objects how = Objects::kMoved);
+  void PlaceOverlay(View& view, const ViewParameters& parameters, double now_s);
   void Report(View& view, double frame_ms, double draw_ms, const Drawn& drawn, FrameRecorder& recorder);
   Picture ReadBack(const View& view, const ViewParameters& parameters, const Drawn& drawn, double clock_now_s) const;
 

@@ -31,7 +31,8 @@ namespace belvedere {
 struct BuildingPage;
 struct VectorPage;
 
-inline constexpr int kDatasetVersion = 2;
+inline constexpr int kDatasetVersion = 3;
+inline constexpr int kOldestDatasetVersion = 2;  // that is still read
 inline constexpr int kMaxDatasetLayers = 256;
 
 enum class LayerKind : uint8_t { kElevation = 1, kImagery = 2, kProperty = 4, kVector = 5, kModel = 6 };

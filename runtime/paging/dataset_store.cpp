@@ -161,9 +161,9 @@ Result<Metadata> FromJson(std::string_view text) {
   try {
     const json in = json::parse(text);
     const int version = in.at("version").get<int>();
-    if (version != kDatasetVersion) {
-      return Status::Error("dataset of version {}, this program reads version {}; build it again", version,
-                           kDatasetVersion);
+    if (version < kOldestDatasetVersion || version > kDatasetVersion) {
+      return Status::Error("dataset of version {}, this program reads versions {} to {}; build it again", version,
+                           kOldestDatasetVersion, kDatasetVersion);
     }
     Metadata metadata;
     metadata.build_time = in.at("build_time").get<std::string>();

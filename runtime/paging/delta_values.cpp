@@ -158,14 +158,16 @@ class Relief {
 
   float at(Post post) const { return posts_m_[static_cast<size_t>(post.index())]; }
 
+  // How far the finest surface is, at points index .. index + 3, from what is drawn there.
+  Lane4 Off(size_t index, const Lane4& drawn) const {
+    const Lane4 over = Load(&high_m_[index]) - drawn;
+    const Lane4 under = drawn - Load(&low_m_[index]);
+    return over > under ? over : under;
+  }
+
   void AddRow(int row, int first, int last, float start, float step, Lane4& greatest) const {
     greatest = MostOfRow(static_cast<size_t>(row * kSide + first), last - first + 1, greatest,
-                         [&](size_t index, const Lane4& along) {
-                           const Lane4 drawn = start + along * step;
-                           const Lane4 over = Load(&high_m_[index]) - drawn;
-                           const Lane4 under = drawn - Load(&low_m_[index]);
-                           return over > under ? over : under;
-                         });
+                         [&](size_t index, const Lane4& along) { return Off(index, start + along * step); });
   }
   static float ErrorOf(const Lane4& greatest) { return GreatestOf(greatest); }
 
@@ -253,6 +255,66 @@ float SmallDiagonalError(const OwnSurface& surface, const Split& split, Post ape
   return std::max(between(apex, split.end_a), between(apex, split.end_b));
 }
 
+// The same of a relief, whose finest triangles hold so few points that rows are taken whole. Offsets are in points
+// from the post.
+constexpr Lane4 kFromTwoWest{-2, -1, 0, 1}, kFromOneWest{-1, 0, 1, 2};
+
+Lane4 Greater(const Lane4& a, const Lane4& b) {
+  return a > b ? a : b;
+}
+
+// Level kBisectionLevels - 2: a square of 5 x 5 points, split by a diagonal.
+float SquareError(const Relief& relief, Post post, const Split& split) {
+  const auto corner = [&](int columns, int rows) { return relief.at({post.column + columns, post.row + rows}); };
+  const float south_west = corner(-1, -1), south_east = corner(1, -1), north_west = corner(-1, 1),
+              north_east = corner(1, 1);
+  const bool rises = (split.end_a.column < split.end_b.column) == (split.end_a.row < split.end_b.row);
+  // West of the diagonal, and east of it, from the south-west corner.
+  const float north_side = (north_east - north_west) / 4, south_side = (south_east - south_west) / 4;
+  const float west_up = (north_west - south_west) / 4, east_up = (north_east - south_east) / 4;
+  const float west_along = rises ? north_side : south_side, east_along = rises ? south_side : north_side;
+  const float east_start = rises ? south_west : north_west + south_east - north_east;
+  const Post point = PointAt<Relief>(post);
+  Lane4 greatest{0, 0, 0, 0};
+  for (int row = 0; row < 5; ++row) {
+    const auto up = static_cast<float>(row);
+    const float diagonal = rises ? up : 4 - up;
+    const float west = south_west + up * west_up, east = east_start + up * east_up;
+    const auto index = static_cast<size_t>((point.row - 2 + row) * FinestSurface::kSide + point.column - 2);
+    const auto add = [&](size_t at, const Lane4& along) {
+      const Lane4 drawn = along <= diagonal ? west + along * west_along : east + along * east_along;
+      greatest = Greater(relief.Off(at, drawn), greatest);
+    };
+    add(index, kFromTwoWest + 2.0F);
+    add(index + 1, kFromOneWest + 2.0F);
+  }
+  return Relief::ErrorOf(greatest);
+}
+
+// Level kBisectionLevels - 1, within the page: two triangles that meet in a row or a column, 13 points in all.
+float DiamondError(const Relief& relief, Post post, const Split& split) {
+  const float a = relief.at(split.end_a), b = relief.at(split.end_b);
+  const float middle = 0.5F * (a + b), along = (b - a) / 4;
+  const float to_a = (relief.at(split.apex_a) - middle) / 2, to_b = (relief.at(split.apex_b) - middle) / 2;
+  const bool along_row = split.end_a.row == split.end_b.row;
+  // What a step west, east, south and north changes: ends and apexes a lie west or south of the post, b east or north.
+  const float west = along_row ? -along : to_a, east = along_row ? along : to_b;
+  const float south = along_row ? to_a : -along, north = along_row ? to_b : along;
+  const auto across = [&](const Lane4& columns) { return columns < 0.0F ? -columns * west : columns * east; };
+  const Post point = PointAt<Relief>(post);
+  const auto at = [&](int column, int row) {
+    return static_cast<size_t>((point.row + row) * FinestSurface::kSide + point.column + column);
+  };
+  const Lane4 one_west = across(kFromOneWest);
+  const Lane4 ahead =
+      Greater(relief.Off(at(-2, 0), middle + across(kFromTwoWest)), relief.Off(at(-1, 0), middle + one_west));
+  const Lane4 beside =
+      Greater(relief.Off(at(-1, -1), middle + south + one_west), relief.Off(at(-1, 1), middle + north + one_west));
+  const Lane4 tips = Greater(relief.Off(at(0, -2), middle + 2 * south + Lane4{0, 0, 0, 0}),
+                             relief.Off(at(0, 2), middle + 2 * north + Lane4{0, 0, 0, 0}));
+  return std::max({Relief::ErrorOf(ahead), beside[0], beside[1], beside[2], tips[0]});
+}
+
 template <typename Surface>
 float ErrorOfSplit(const Surface& surface, Post post, const Split& split, int level) {
   constexpr bool kOfPosts = std::is_same_v<Surface, OwnSurface>;
@@ -260,6 +322,10 @@ float ErrorOfSplit(const Surface& surface, Post post, const Split& split, int le
   if constexpr (kOfPosts) {
     greatest = surface.ErrorBetween(post, split.end_a, split.end_b);
     if (level == kBisectionLevels - 1) return greatest;
+  } else {
+    const bool within = split.apex_a.inside() && split.apex_b.inside();
+    if (level == kBisectionLevels - 1 && within) return DiamondError(surface, post, split);
+    if (level == kBisectionLevels - 2) return SquareError(surface, post, split);
   }
   for (const Post apex : {split.apex_a, split.apex_b}) {
     if (!apex.inside()) continue;
@@ -306,7 +372,7 @@ std::vector<float> DeltaValuesOf(Quadcode node, std::span<const float> heights_m
   constexpr double kSampled = 1.02;    // what is looked at in places may be a little more between them
   constexpr double kAtHeight = 0.002;  // by which the Earth's shape counts for more, or less, 12 km over or under it
   const Paraboloid paraboloid(node);
-  const Roundness roundness(node, paraboloid);
+  const Roundness& roundness = RoundnessAround(node);
   const Relief relief(heights_m, finest, paraboloid);
   const double post_radians = node.SizeDegrees() / kCells * kRadiansPerDegree;
   return DeltasBy([&](Post post, int level) {

@@ -15,6 +15,8 @@ constexpr uint8_t kKindImage = 2;
 constexpr uint8_t kKindProperty = 4;
 constexpr uint16_t kFlagAlpha = 1;
 constexpr uint16_t kFlagDeltas = 2;
+constexpr int kShiftOfHeights = 8;  // place in the flags of how many low bits all heights have as 0
+constexpr uint16_t kMostHeightBits = 31;
 constexpr int kElevationZstdLevel = 3;
 constexpr int kImageZstdLevel = 1;
 constexpr int kPropertyZstdLevel = 3;
@@ -81,6 +83,13 @@ void DecodePlane(const uint8_t* residuals, std::vector<uint8_t>& plane) {
   }
 }
 
+// How many of the lowest bits are 0 in all heights: they are rounded to that power of two.
+int ZeroBits(std::span<const int32_t> heights_mm) {
+  uint32_t any = 0;
+  for (const int32_t height_mm : heights_mm) any |= static_cast<uint32_t>(height_mm);
+  return any == 0 ? 0 : std::countr_zero(any);
+}
+
 // A post's step is told from the parent with the greater delta value. Level by level, so that the parents come first.
 uint8_t GuessStep(const std::vector<uint8_t>& steps, Post post) {
   const Split split = SplitAt(post);
@@ -120,12 +129,14 @@ std::vector<uint8_t> EncodeElevation(const ElevationPage& page) {
   std::copy(page.block_errors_m.begin(), page.block_errors_m.end(), numbers.begin() + 3);
   for (size_t i = 0; i < numbers.size(); ++i) SetFloat(&raw[4 * i], numbers[i]);
   uint8_t* planes = raw.data() + kElevationNumbers * sizeof(float);
+  const int zero_bits = ZeroBits(page.heights_mm);
+  const auto height_at = [&](size_t at) { return static_cast<uint32_t>(page.heights_mm[at] >> zero_bits); };
   for (size_t row = 0; row < kSide; ++row) {
     uint32_t step_before = 0;
     for (size_t column = 0; column < kSide; ++column) {
       const size_t at = row * kSide + column;
-      const uint32_t below = row > 0 ? static_cast<uint32_t>(page.heights_mm[at - kSide]) : 0;
-      const uint32_t step = static_cast<uint32_t>(page.heights_mm[at]) - below;
+      const uint32_t below = row > 0 ? height_at(at - kSide) : 0;
+      const uint32_t step = height_at(at) - below;
       const uint32_t residual = ZigZag(step - step_before);
       step_before = step;
       for (size_t byte = 0; byte < 4; ++byte)
@@ -138,12 +149,14 @@ std::vector<uint8_t> EncodeElevation(const ElevationPage& page) {
     SetFloat(deltas, page.deltas.greatest_m);
     PutSteps(page.deltas.steps, deltas + sizeof(float));
   }
-  return WrapPage(kKindElevation, has_deltas ? kFlagDeltas : uint16_t{0}, raw, kElevationZstdLevel);
+  const auto flags = static_cast<uint16_t>(zero_bits << kShiftOfHeights | (has_deltas ? kFlagDeltas : 0));
+  return WrapPage(kKindElevation, flags, raw, kElevationZstdLevel);
 }
 
 Result<std::shared_ptr<ElevationPage>> DecodeElevation(std::span<const uint8_t> bytes) {
   if (Status status = CheckPageHeader(bytes, kKindElevation); !status.ok()) return status;
   const bool has_deltas = (bytes[6] & kFlagDeltas) != 0;
+  const uint32_t zero_bits = bytes[7] & kMostHeightBits;
   const auto raw = UnwrapPage(bytes, kElevationRawBytes + (has_deltas ? kDeltaRawBytes : 0));
   if (!raw.ok()) return raw.status();
   constexpr size_t kSide = static_cast<size_t>(kElevationSide);
@@ -167,6 +180,8 @@ Result<std::shared_ptr<ElevationPage>> DecodeElevation(std::span<const uint8_t> 
       page->heights_mm[at] = static_cast<int32_t>(below + step);
     }
   }
+  for (int32_t& height_mm : page->heights_mm)
+    height_mm = static_cast<int32_t>(static_cast<uint32_t>(height_mm) << zero_bits);
   if (has_deltas) {
     const std::span<const uint8_t> deltas = raw->subspan(kElevationRawBytes);
     page->deltas.greatest_m = GetFloat(deltas.data());

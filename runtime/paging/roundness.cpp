@@ -6,7 +6,11 @@
 #include <glm/geometric.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 
 namespace belvedere {
 namespace {
@@ -77,6 +81,24 @@ void Roundness::Widen(Post apex, const Split& split, Rest& rest) const {
       rest.aside_m = std::max(rest.aside_m, glm::length(off - up_m * up));
     }
   }
+}
+
+const Roundness& RoundnessAround(Quadcode node) {
+  constexpr size_t kKept = 64;  // 30 KB each
+  struct Kept {
+    Quadcode node;
+    std::unique_ptr<const Roundness> roundness;
+  };
+  thread_local std::array<Kept, kKept> kept;
+  // Rows next to each other and levels over each other have places of their own.
+  constexpr int64_t kRowsOfALevel = 11;
+  Kept& place = kept[static_cast<size_t>(node.row() + kRowsOfALevel * node.level()) % kKept];
+  const Quadcode first = Quadcode::FromColumnRow(node.level(), 0, node.row());
+  if (place.roundness == nullptr || place.node != first) {
+    place.roundness = std::make_unique<const Roundness>(first, Paraboloid(first));
+    place.node = first;
+  }
+  return *place.roundness;
 }
 
 }  // namespace belvedere

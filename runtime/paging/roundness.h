@@ -1,7 +1,8 @@
 // Roundness: what the Earth's shape does to the triangles of a quadnode, for delta values (delta_values.h): a
 // paraboloid on which heights can be compared fast, and how far that is from the ellipsoid.
 //
-// Units: metres; columns and rows of FinestSurface. Threads: values.
+// Units: metres; columns and rows of FinestSurface. Threads: values; RoundnessAround keeps what it made for each
+// thread.
 #pragma once
 
 #include "runtime/earth/bisection.h"
@@ -48,5 +49,9 @@ class Roundness {
   const Paraboloid paraboloid_;
   std::array<std::array<Rest, kPosts>, kBisectionLevels> rests_{};
 };
+
+// The Roundness of the first quadnode of the level and row in which the node lies, which serves all of them. Those of
+// the rows asked for last are kept; valid until this thread asks again.
+const Roundness& RoundnessAround(Quadcode node);
 
 }  // namespace belvedere

@@ -35,7 +35,7 @@ std::string Prepare(const std::string& name) {
   Write(folder + "/small.tif",
         {.width = 8, .height = 4, .affine = Degrees(-180, 90, 45), .value = [](int, int, int) { return 7.0; }});
   Write(folder + "/large.tif",
-        {.width = 1024, .height = 512, .affine = Degrees(-180, 90, 360.0 / 1024), .value = [&](int, int, int) {
+        {.width = 2048, .height = 1024, .affine = Degrees(-180, 90, 360.0 / 2048), .value = [&](int, int, int) {
            return static_cast<double>(random() % 8000);
          }});
   EXPECT_TRUE(Succeeds([&] { return BuildFrom(folder, "small.tif").ok(); }));

@@ -51,7 +51,7 @@ TEST(Build, SharedPostsAreTheSameBitsEverywhere) {
                               .value = [&](int, int, int) { return static_cast<double>(random() % 3000); }});
   // Over 180 E.
   Write(folder + "/seam.tif",
-        {.width = 50, .height = 50, .affine = Degrees(179, -10, 0.04), .value = [&](int, int, int) {
+        {.width = 100, .height = 100, .affine = Degrees(179, -10, 0.02), .value = [&](int, int, int) {
            return static_cast<double>(random() % 5000);
          }});
   const auto report =
@@ -67,7 +67,7 @@ TEST(Build, SharedPostsAreTheSameBitsEverywhere) {
   for (const auto& problem : verification.problems) ADD_FAILURE() << problem;
 }
 
-TEST(Build, HeightsAreRoundedToASixteenthOfWhatTheSourceTellsApart) {
+TEST(Build, HeightsAreRoundedToAQuarterOfWhatTheSourceTellsApart) {
   // A ramp, so fine that its level alone would round to 1 mm.
   const auto steps_mm = [](const std::string& name, GDALDataType type, double scale) {
     const std::string folder = FreshFolder(name);
@@ -94,10 +94,40 @@ TEST(Build, HeightsAreRoundedToASixteenthOfWhatTheSourceTellsApart) {
     }
     return common;
   };
-  EXPECT_EQ(steps_mm("metres", GDT_Int16, 1), 32);
-  EXPECT_EQ(steps_mm("feet", GDT_Int16, 0.3048), 16);
-  EXPECT_EQ(steps_mm("centimetres", GDT_Int32, 0.01), 1);
+  EXPECT_EQ(steps_mm("metres", GDT_Int16, 1), 128);
+  EXPECT_EQ(steps_mm("feet", GDT_Int16, 0.3048), 64);
+  EXPECT_EQ(steps_mm("centimetres", GDT_Int32, 0.01), 2);
   EXPECT_EQ(steps_mm("float", GDT_Float32, 1), 1);
+}
+
+TEST(Build, BetweenPixelsHeightsFollowTheGroundsCurve) {
+  // Ridges eight pixels apart. On their crests, between pixels, no height is above those of the source.
+  constexpr double kPixel_deg = 0.01, kAmplitude_m = 1000;
+  const auto ridges = [](double column) { return kAmplitude_m * std::sin(column * M_PI / 4); };
+  const std::string folder = FreshFolder("ridges");
+  Write(folder + "/ridges.tif",
+        {.width = 128, .height = 128, .affine = Degrees(10, 20, kPixel_deg), .value = [&](int, int column, int) {
+           return ridges(column + 0.5);
+         }});
+  MustBuild(folder, Layer("elevation", {"path = \"ridges.tif\"\ndatum = \"ellipsoid\""}));
+  const auto dataset = MustOpen(folder);
+  const Quadcode node = dataset->FinestContaining(0, 19.4, 10.6);
+  EXPECT_EQ(node.level(), 6);
+  const auto page = dataset->ReadElevation(0, node);
+  ASSERT_TRUE(page.ok()) << page.message();
+  double off_m = 0, off_of_lines_m = 0, highest_m = 0;
+  for (int column = 0; column < kPosts; ++column) {
+    const double along = (node.Box().west_deg + node.SizeDegrees() * column / kCells - 10) / kPixel_deg;
+    const double west = std::floor(along - 0.5) + 0.5;
+    const double line_m = ridges(west) + (along - west) * (ridges(west + 1) - ridges(west));
+    const double height_m = (*page)->at(column, 60) / 1000.0;
+    off_m += std::abs(height_m - ridges(along)) / kPosts;
+    off_of_lines_m += std::abs(line_m - ridges(along)) / kPosts;
+    highest_m = std::max(highest_m, height_m);
+  }
+  EXPECT_GT(off_of_lines_m, 25);
+  EXPECT_LT(off_m, 0.6 * off_of_lines_m);
+  EXPECT_NEAR(highest_m, ridges(2.5), 0.01);
 }
 
 TEST(Build, APoleHasOneHeightALevel) {

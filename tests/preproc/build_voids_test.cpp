@@ -162,15 +162,15 @@ TEST(BuildVoids, InTheLowestSourceAndUnderAFeather) {
 TEST(BuildVoids, FilledPostsAreTheSameBitsInEveryPage) {
   const std::string folder = FreshFolder("void_bits");
   std::mt19937 random(6);
-  Write(folder + "/world.tif", {.width = 720,
-                                .height = 360,
-                                .affine = Degrees(-180, 90, 0.5),
+  Write(folder + "/world.tif", {.width = 1440,
+                                .height = 720,
+                                .affine = Degrees(-180, 90, 0.25),
                                 .value =
                                     [&](int, int column, int row) {
                                       const double height = static_cast<double>(random() % 3000);
-                                      const bool seam = (column < 20 || column >= 700) && row > 100 && row < 140;
-                                      const bool north = row > 10 && row < 14 && column % 7 < 4;
-                                      const bool trees = column > 440 && column < 460 && row > 80 && row < 100;
+                                      const bool seam = (column < 40 || column >= 1400) && row > 200 && row < 280;
+                                      const bool north = row > 20 && row < 28 && column % 14 < 8;
+                                      const bool trees = column > 880 && column < 920 && row > 160 && row < 200;
                                       return seam || north || trees ? kNodata : height;
                                     },
                                 .finish = [](GDALDataset& d) { d.GetRasterBand(1)->SetNoDataValue(kNodata); }});

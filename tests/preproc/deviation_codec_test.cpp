@@ -12,10 +12,10 @@ CellDeviations Deviations() {
   std::mt19937 random(4);
   CellDeviations deviations(static_cast<size_t>(kCells) * kCells);
   for (Deviation& cell : deviations) {
-    cell.low = -static_cast<int64_t>(random() % 100000);
-    cell.high = static_cast<int64_t>(random());
+    cell.low = -static_cast<int32_t>(random() % 100000);
+    cell.high = static_cast<int32_t>(random() >> 1);
   }
-  deviations[0] = {std::numeric_limits<int64_t>::min(), std::numeric_limits<int64_t>::max()};
+  deviations[0] = {std::numeric_limits<int32_t>::min(), std::numeric_limits<int32_t>::max()};
   deviations[1] = {5, -5};
   return deviations;
 }

@@ -123,7 +123,7 @@ std::string HeightsFolder() {
            return static_cast<double>(random() % 3000);
          }});
   Write(folder + "/seam.tif",
-        {.width = 60, .height = 60, .affine = Degrees(178.5, 1.5, 0.05), .value = [&](int, int, int) {
+        {.width = 75, .height = 75, .affine = Degrees(178.5, 1.5, 0.04), .value = [&](int, int, int) {
            return static_cast<double>(random() % 9000);
          }});
   MustBuild(folder, Layer("elevation", {"path = \"world.tif\"", "path = \"seam.tif\""}));

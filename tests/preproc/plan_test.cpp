@@ -26,13 +26,6 @@ TEST(Plan, TheFinestLevelIsTheCoarsestThatKeepsUpWithTheSource) {
   }
 }
 
-TEST(Plan, TheToleranceOfFurtherRefinementFollowsTheSource) {
-  EXPECT_EQ(RefineTolerance_m(0), 50) << "39 km";
-  EXPECT_EQ(RefineTolerance_m(3), 50) << "4.9 km, ETOPO5";
-  EXPECT_NEAR(RefineTolerance_m(9), 6.4, 0.1) << "76 m, SRTM";
-  EXPECT_NEAR(RefineTolerance_m(17), 0.025, 0.001) << "30 cm";
-}
-
 TEST(Plan, LevelZeroIsWholeAndFinerNodesFollowTheSource) {
   EXPECT_EQ(CountNodes({}), kTrees);
   // Within one quadnode of every level: three siblings of each level come with the one that holds it.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -96,6 +97,67 @@ TEST(Resample, PositionsWithoutASourceCountNothing) {
   const auto out = ResampleGrid<double>(MakeWindow(taps, taps, [](int, int) { return 9.0; }), taps, taps);
   EXPECT_EQ(out[1], 0.0);
   EXPECT_NEAR(out[7], 1.0, 1e-12);
+}
+
+// A cliff of 100 m between columns 4 and 5, and pixels of one coverage.
+PixelWindow Cliff() {
+  PixelWindow window{0, 0, 10, 10, 1, {}};
+  for (int row = 0; row < 10; ++row) {
+    for (int column = 0; column < 10; ++column) {
+      window.pixels.push_back(column < 5 ? 0.0F : 100.0F);
+      window.pixels.push_back(1.0F);
+    }
+  }
+  return window;
+}
+
+TEST(Resample, AClampedCubicStaysBetweenThePixelsNextToIt) {
+  const PixelWindow window = Cliff();
+  const std::vector<double> along = {3.5, 3.9, 4.4, 5.0, 5.6, 6.2, 6.5};
+  const AxisTaps taps = MakeTaps(along, 1.0, Kernel::kCubic, 0);
+  for (const bool grid : {true, false}) {
+    auto heights = grid ? ResampleGrid<double>(window, taps, taps) : ResamplePoints<double>(window, taps, taps);
+    const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+    EXPECT_LT(*low, -1) << "a cubic swings over at a cliff";
+    EXPECT_GT(*high, 101);
+    ClampToNearest(window, taps, taps, grid, heights);
+    const size_t rows = grid ? along.size() : 1;
+    for (size_t row = 0; row < rows; ++row) {
+      const auto at = [&](size_t i) { return heights[(row * along.size() + i) * 2]; };
+      for (const size_t west : {0, 1, 2}) EXPECT_EQ(at(west), 0) << west;
+      EXPECT_NEAR(at(3), 50, 1e-9);
+      EXPECT_EQ(at(5), 100);
+      EXPECT_EQ(at(6), 100);
+    }
+  }
+}
+
+TEST(Resample, AClampedCubicKeepsPixelsAndWhatLiesBetweenThem) {
+  PixelWindow window{0, 0, 8, 8, 1, {}};
+  for (int i = 0; i < 64; ++i) {
+    window.pixels.push_back(static_cast<float>(i % 8 * i % 13 + i / 8 * 3));
+    window.pixels.push_back(1.0F);
+  }
+  const std::vector<double> along = {2.5, 3.5, 3.75, 4.25, 4.5, 5.5};
+  const AxisTaps taps = MakeTaps(along, 1.0, Kernel::kCubic, 0);
+  auto heights = ResampleGrid<double>(window, taps, taps);
+  ClampToNearest(window, taps, taps, true, heights);
+  for (size_t row = 0; row < along.size(); ++row) {
+    for (size_t column = 0; column < along.size(); ++column) {
+      const double height = heights[(row * along.size() + column) * 2];
+      const auto pixel = [&](double x, double y) {
+        return window.pixels[(static_cast<size_t>(y) * 8 + static_cast<size_t>(x)) * 2];
+      };
+      const double x = along[column] - 0.5, y = along[row] - 0.5;
+      const auto [low, high] = std::minmax({pixel(std::floor(x), std::floor(y)), pixel(std::ceil(x), std::floor(y)),
+                                            pixel(std::floor(x), std::ceil(y)), pixel(std::ceil(x), std::ceil(y))});
+      EXPECT_GE(height, low);
+      EXPECT_LE(height, high);
+      if (x == std::floor(x) && y == std::floor(y)) {
+        EXPECT_EQ(height, pixel(x, y));
+      }
+    }
+  }
 }
 
 }  // namespace

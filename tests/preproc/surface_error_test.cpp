@@ -155,15 +155,5 @@ TEST(SurfaceError, ExtremesIncludeWhatIsFiner) {
   EXPECT_LT(page->max_m, 8848.87f);
 }
 
-TEST(SurfaceError, ShareBeyondCountsProbes) {
-  ElevationPage flat;
-  flat.heights_mm.assign(static_cast<size_t>(kElevationSide) * kElevationSide, 5000);
-  std::vector<double> probes(32 * 32, 5.0);
-  EXPECT_EQ(ShareBeyond(flat, probes, 1.0), 0.0);
-  for (size_t i = 0; i < 256; ++i) probes[i] = 7.0;
-  EXPECT_EQ(ShareBeyond(flat, probes, 1.0), 0.25);
-  EXPECT_EQ(ShareBeyond(flat, probes, 2.5), 0.0);
-}
-
 }  // namespace
 }  // namespace belvedere

@@ -59,6 +59,7 @@ TEST_F(Thread, RedrawsTheSameListsAsOftenAsAsked) {
   thread_->AddView(1, channel);
   WaitForFrames(*channel, 1);
   EXPECT_EQ(thread_->Redraw(1, 7).get().size(), 7U);
+  EXPECT_EQ(thread_->Redraw(1, 7, true).get().size(), 7U);
   EXPECT_TRUE(thread_->Redraw(99, 7).get().empty());
 }
 

@@ -158,6 +158,9 @@ TEST(Dataset, AnotherVersionIsRefusedByName) {
   ASSERT_TRUE(store::FromJson(text).ok()) << store::FromJson(text).message();
   const std::string own = fmt::format("\"version\": {}", kDatasetVersion);
   ASSERT_NE(text.find(own), std::string::npos);
+  std::string older = text;
+  older.replace(older.find(own), own.size(), fmt::format("\"version\": {}", kOldestDatasetVersion));
+  EXPECT_TRUE(store::FromJson(older).ok());
   text.replace(text.find(own), own.size(), "\"version\": 77");
   const auto refused = store::FromJson(text);
   ASSERT_FALSE(refused.ok());

@@ -65,6 +65,23 @@ TEST(PageCodec, DeltaValuesComeBackToTheBitWhereThereAreAny) {
   EXPECT_EQ((*with)->heights_mm, page.heights_mm);
 }
 
+TEST(PageCodec, HeightsThatAreRoundedTakeFewerBytes) {
+  ElevationPage page = Hills(1);
+  const size_t exact = EncodeElevation(page).size();
+  for (int32_t& height_mm : page.heights_mm) height_mm = height_mm / 128 * 128;
+  page.heights_mm[7] = -128;
+  const std::vector<uint8_t> rounded = EncodeElevation(page);
+  EXPECT_EQ(rounded[7], 7) << "the shift";
+  EXPECT_LT(rounded.size(), exact * 3 / 4);
+  const auto back = DecodeElevation(rounded);
+  ASSERT_TRUE(back.ok()) << back.message();
+  EXPECT_EQ((*back)->heights_mm, page.heights_mm);
+  page.heights_mm.assign(page.heights_mm.size(), 0);
+  EXPECT_EQ((*DecodeElevation(EncodeElevation(page)))->heights_mm, page.heights_mm);
+  page.heights_mm[9] = INT32_MIN;  // one bit alone
+  EXPECT_EQ((*DecodeElevation(EncodeElevation(page)))->heights_mm, page.heights_mm);
+}
+
 TEST(PageCodec, ElevationHoldsTheWholeRangeOfInt32) {
   ElevationPage page = Hills(2);
   page.heights_mm[0] = INT32_MIN;
