@@ -43,9 +43,11 @@ bool HatchOpen(uint32_t appearance) {
 
 JointsOf JointsAt(const ObjectRecord& record, double now_s) {
   JointsOf joints;
-  const double since_s = std::clamp(now_s - record.kinematics.time_s, 0.0, 60.0);
-  joints.pose.turret_rad = AngleOf(record, kPrimaryTurret, kAzimuth, kAzimuthRate, since_s);
-  joints.pose.gun_rad = AngleOf(record, kPrimaryGun, kElevation, kElevationRate, since_s);
+  if (!record.parts().empty()) {
+    const double since_s = std::clamp(now_s - record.kinematics.time_s, 0.0, 60.0);
+    joints.pose.turret_rad = AngleOf(record, kPrimaryTurret, kAzimuth, kAzimuthRate, since_s);
+    joints.pose.gun_rad = AngleOf(record, kPrimaryGun, kElevation, kElevationRate, since_s);
+  }
   if (record.type.is_air_platform()) {
     const auto gear = ValueOf(record, kLandingGear, kPosition);
     const double down =
@@ -55,8 +57,9 @@ JointsOf JointsAt(const ObjectRecord& record, double now_s) {
     joints.pose.open = HatchOpen(record.appearance) ? 0 : 1;
   }
   const bool runs = (record.appearance & kPowerPlant) != 0 && record.damage() < 3;
-  joints.spin_radps = runs ? kSpin_radps : 0;
-  joints.pose.spin_rad = static_cast<float>(std::remainder(now_s * static_cast<double>(joints.spin_radps), 2 * M_PI));
+  if (!runs) return joints;
+  joints.spin_radps = kSpin_radps;
+  joints.pose.spin_rad = static_cast<float>(std::remainder(now_s * static_cast<double>(kSpin_radps), 2 * M_PI));
   return joints;
 }
 

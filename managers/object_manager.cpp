@@ -145,9 +145,11 @@ class ObjectManager::Worker {
     const Posture posture = PostureOf(record, instance.ecef_from_body);
     instance.position_ecef += posture.lowered_m * instance.ecef_from_body[2];
     instance.ecef_from_body = posture.ecef_from_body;
-    const JointsOf joints = JointsAt(record, now_s);
-    instance.joints = joints.pose;
-    instance.spin_radps = joints.spin_radps;
+    if (show.how == ObjectShow::How::kModel) {
+      const JointsOf joints = JointsAt(record, now_s);
+      instance.joints = joints.pose;
+      instance.spin_radps = joints.spin_radps;
+    }
     instance.radius_m = radius_m;
     instance.look.colour = ForceColour(record.force);
     instance.look.symbol = static_cast<uint8_t>(look.symbol);

@@ -1,6 +1,7 @@
 #include "render/object_overlay.h"
 
 #include "render/view_block.h"
+#include "runtime/earth/ellipsoid.h"
 
 #include <glm/geometric.hpp>
 
@@ -13,8 +14,22 @@ namespace belvedere {
 namespace {
 
 constexpr float kFrame = 1.35F, kInFrame = 0.72F;  // of the usual size: a frame, and the symbol in it
-constexpr double kPulledForward =
-    0.97;  // overlays are this much nearer than their object, to stand clear of the ground
+// Overlays are nearer than their object, to stand clear of the ground; and from far out by as much more as the globe
+// may bulge towards the eye on the way to their ends.
+constexpr double kNearer = 0.03, kNearest = 0.5;  // of the distance
+constexpr double kBulge = 3, kFarOut_m = 1e5;
+constexpr double kSymbolReach_px = 14;
+
+// reach_px: from the object to the overlay's end.
+float DepthOf(const MovedObject& object, double reach_px, const ViewParameters& view, const ViewMatrices& matrices) {
+  const double metres_a_px = view.projection == Projection::kPerspective
+                                 ? object.distance_m / matrices.pixels_per_radian
+                                 : 1 / matrices.pixels_per_metre;
+  const double height_m = glm::length(matrices.eye_ecef) - kEquatorialRadius_m;
+  const double bulge_m = kBulge * std::clamp(height_m / kFarOut_m, 0.0, 1.0) * reach_px * metres_a_px;
+  const double nearer_m = std::clamp(bulge_m, kNearer * object.distance_m, kNearest * object.distance_m);
+  return DepthAt(matrices.clip_from_camera, view.projection, object.distance_m - nearer_m);
+}
 
 // Angle on the screen, clockwise from up, of where the object's nose points; 0 when it points along the line of sight.
 float HeadingOnScreen(const MovedObject& object, const ViewParameters& view) {
@@ -30,11 +45,15 @@ bool Turns(SymbolShape shape) {
   return shape == SymbolShape::kAir || shape == SymbolShape::kSurface;
 }
 
-void AddLabel(const ObjectLabel& label, const MovedObject& object, float beside_px, float depth,
-              OverlayBatch::Colour colour, OverlayBatch& batch) {
+void AddLabel(const ObjectLabel& label, const MovedObject& object, const ViewParameters& view,
+              const ViewMatrices& matrices, const ObjectInstance& instance, OverlayBatch& batch) {
   constexpr float kAscent_px = 11, kLeaderWidth_px = 1;
+  const OverlayBatch::Colour colour = instance.look.colour;
+  const float beside_px = BesideLabel(DrawnAsModel(instance, view), object.radius_px);
   const std::string text = ToLatin1(label.text);
   const LabelBox box = BoxOf(label.side, beside_px, SizeOf(text));
+  const float reach_px = std::max({-box.left, box.right, -box.top, box.bottom});
+  const float depth = DepthOf(object, static_cast<double>(reach_px), view, matrices);
   const bool left_of = box.right < 0;
   if (box.has_leader) {
     const glm::vec2 end(left_of ? box.right + 2 : box.left - 2, 0.5F * (box.top + box.bottom));
@@ -55,9 +74,6 @@ void AddLabel(const ObjectLabel& label, const MovedObject& object, float beside_
 
 void AddObjectOverlay(const DisplayList& list, std::span<const MovedObject> objects, const ViewParameters& view,
                       const ViewMatrices& matrices, OverlayBatch& batch) {
-  const auto depth_of = [&](const MovedObject& object) {
-    return DepthAt(matrices.clip_from_camera, view.projection, kPulledForward * object.distance_m);
-  };
   // Farthest first, so that the nearer symbol covers the farther one.
   for (auto object = objects.rbegin(); object != objects.rend(); ++object) {
     const ObjectInstance& instance = list.instances[object->instance];
@@ -65,18 +81,18 @@ void AddObjectOverlay(const DisplayList& list, std::span<const MovedObject> obje
     if (shape == SymbolShape::kNone || DrawnAsModel(instance, view)) continue;
     const float angle = Turns(shape) ? HeadingOnScreen(*object, view) : 0.0F;
     const bool framed = instance.look.frame != 0 && instance.look.frame < kSymbolShapes;
+    const float depth = DepthOf(*object, kSymbolReach_px, view, matrices);
     if (framed) {
-      batch.AddSymbol(object->screen_px, depth_of(*object), static_cast<SymbolShape>(instance.look.frame), 0, kFrame,
+      batch.AddSymbol(object->screen_px, depth, static_cast<SymbolShape>(instance.look.frame), 0, kFrame,
                       instance.look.colour);
     }
-    batch.AddSymbol(object->screen_px, depth_of(*object), shape, angle, framed ? kInFrame : 1.0F, instance.look.colour);
+    batch.AddSymbol(object->screen_px, depth, shape, angle, framed ? kInFrame : 1.0F, instance.look.colour);
   }
   if (!view.labels) return;
   for (const MovedObject& object : objects) {
     const ObjectInstance& instance = list.instances[object.instance];
     if (instance.label == 0 || instance.label >= list.labels.size()) continue;
-    AddLabel(list.labels[instance.label], object, BesideLabel(DrawnAsModel(instance, view), object.radius_px),
-             depth_of(object), instance.look.colour, batch);
+    AddLabel(list.labels[instance.label], object, view, matrices, instance, batch);
   }
 }
 

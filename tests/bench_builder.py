@@ -4,7 +4,7 @@
     bench_builder.py BIN HEIGHTS.tif IMAGE.jpg [--quick] [--work DIR]
 
 BIN holds belvedere-build (build/bin); HEIGHTS.tif and IMAGE.jpg are srtm90.tif and bmng.jpg of ./demo. The large source
-is HEIGHTS.tif refined by a fractal (tests/figures/refine_heights.py): 537 MB, --quick 34 MB. The whole takes half an
+is HEIGHTS.tif refined by a fractal (tests/figures/refine_heights.py): 554 MB, --quick 38 MB. The whole takes a quarter of an
 hour and 8 GB in DIR. Each pair is measured in turns, three times, and the median ratio counts. Exits 1 when a program
 fails; a limit that is not kept is marked and is no failure, for machines differ.
 """

@@ -12,8 +12,6 @@ namespace fs = std::filesystem;
 // Address space, not disk: the file grows with what is written.
 constexpr size_t kLargestStoreBytes = size_t{1} << 40;
 constexpr size_t kLeastStoreBytes = size_t{1} << 30;
-// What the system maps around a page that is touched, where the file is in its cache.
-constexpr size_t kMappedAtOnce = size_t{64} << 10;
 
 MDB_val ValueOf(std::span<const uint8_t> bytes) {
   return {bytes.size(), const_cast<uint8_t*>(bytes.data())};
@@ -153,7 +151,7 @@ void LmdbWriter::ForEachPage(const std::function<void(int, Quadcode, size_t)>& v
     if (key.mv_size != store::kKeyBytes) continue;
     const auto* bytes = static_cast<const uint8_t*>(key.mv_data);
     if (const auto node = Quadcode::FromWord(store::WordOfKey(bytes))) visit(int{bytes[0]}, *node, value.mv_size);
-    mapping_.HaveRead(kMappedAtOnce);
+    mapping_.HaveRead(StoreMapping::kMappedAtOnce);
   }
   mdb_cursor_close(cursor);
 }

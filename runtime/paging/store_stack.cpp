@@ -110,7 +110,10 @@ class StoreStack::File {
     if (const int rc = mdb_cursor_open(txn.get(), dbi_, &cursor); rc != MDB_SUCCESS) return rc;
     MDB_val key{}, value{};
     int rc = MDB_SUCCESS;
-    while ((rc = mdb_cursor_get(cursor, &key, &value, MDB_NEXT)) == MDB_SUCCESS) visit(BytesOf(key), BytesOf(value));
+    while ((rc = mdb_cursor_get(cursor, &key, &value, MDB_NEXT)) == MDB_SUCCESS) {
+      visit(BytesOf(key), BytesOf(value));
+      mapping_.HaveRead(StoreMapping::kMappedAtOnce);
+    }
     mdb_cursor_close(cursor);
     return rc == MDB_NOTFOUND ? MDB_SUCCESS : rc;
   }

@@ -228,7 +228,7 @@ void Models(Gallery& gallery) {
     ObjectRecord helicopter = gallery.At(14, 36, ground_m + 9, {1, 2, 225, 21, 1, 0, 0}, -60, 5);
     helicopter.appearance = 1 << 22 | 3 << 13;
     gallery.Put(helicopter);
-    ObjectRecord fighter = gallery.At(-8, 24, ground_m + 9, kFighter, 250, 160);
+    ObjectRecord fighter = gallery.At(-1, 30, ground_m + 3.2, kFighter, 235, 1);
     for (const uint16_t station : {uint16_t{640}, uint16_t{641}, uint16_t{768}, uint16_t{769}, uint16_t{512}}) {
       fighter.attached_array[fighter.attached_count++] = {station, {2, 1, 225, 1, 1, 0, 0}};
     }

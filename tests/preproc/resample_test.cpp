@@ -124,7 +124,7 @@ TEST(Resample, AClampedCubicStaysBetweenThePixelsNextToIt) {
     const size_t rows = grid ? along.size() : 1;
     for (size_t row = 0; row < rows; ++row) {
       const auto at = [&](size_t i) { return heights[(row * along.size() + i) * 2]; };
-      for (const size_t west : {0, 1, 2}) EXPECT_EQ(at(west), 0) << west;
+      for (size_t west = 0; west < 3; ++west) EXPECT_EQ(at(west), 0) << west;
       EXPECT_NEAR(at(3), 50, 1e-9);
       EXPECT_EQ(at(5), 100);
       EXPECT_EQ(at(6), 100);

@@ -1,8 +1,10 @@
 #include "render/object_overlay.h"
 
+#include "render/view_block.h"
 #include "runtime/earth/ellipsoid.h"
 
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -87,6 +89,27 @@ TEST_F(ObjectOverlay, LabelsCanBeOffAndModelsHaveNoSymbol) {
   view_.symbols = false;
   list_.instances[0].look.model_slot = 3;
   EXPECT_TRUE(Build().empty());
+}
+
+TEST_F(ObjectOverlay, FromFarOutTheGlobeCutsNoLabel) {
+  view_.eye_ecef = ToEcef({0, 0, 12'000e3});
+  for (const double longitude_deg : {-55.0, -30.0, 30.0, 55.0}) {
+    Put(longitude_deg, 0, "ABCDEFGH", longitude_deg < 0 ? LabelSide::kRight : LabelSide::kUpperLeft);
+  }
+  const ViewMatrices matrices = MatricesOf(view_, 0, 9000);
+  for (const OverlayBatch::Vertex& vertex : Build()) {
+    // Where the line of sight through the corner meets the globe.
+    const double right = (static_cast<double>(vertex.x) - 0.5 * view_.width_px) / matrices.pixels_per_radian;
+    const double up = (0.5 * view_.height_px - static_cast<double>(vertex.y)) / matrices.pixels_per_radian;
+    const glm::dvec3 ray = view_.ecef_from_camera * glm::dvec3(right, up, -1);
+    const double along = -glm::dot(ray, view_.eye_ecef) / glm::dot(ray, ray);
+    const glm::dvec3 nearest = view_.eye_ecef + along * ray;
+    const double inside = kEquatorialRadius_m * kEquatorialRadius_m - glm::dot(nearest, nearest);
+    if (inside < 0) continue;  // beside it
+    const double axis_m = along - std::sqrt(inside / glm::dot(ray, ray));
+    EXPECT_GT(vertex.depth, DepthAt(matrices.clip_from_camera, view_.projection, axis_m))
+        << vertex.x << " " << vertex.y;
+  }
 }
 
 }  // namespace
