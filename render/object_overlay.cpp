@@ -14,9 +14,11 @@ namespace belvedere {
 namespace {
 
 constexpr float kFrame = 1.35F, kInFrame = 0.72F;  // of the usual size: a frame, and the symbol in it
-// Overlays are nearer than their object, to stand clear of the ground; and from far out by as much more as the globe
-// may bulge towards the eye on the way to their ends.
-constexpr double kNearer = 0.03, kNearest = 0.5;  // of the distance
+// Overlays are nearer than their object, to stand clear of the ground: far less than a hill away, but close to the eye
+// by more, where the ground before an object rises into its label; and from far out by as much as the globe may bulge
+// towards the eye on the way to their ends.
+constexpr double kNearer = 0.03, kNearerClose = 0.5, kNearest = 0.5;  // of the distance
+constexpr double kClose_m = 500, kNotClose_m = 5000;
 constexpr double kBulge = 3, kFarOut_m = 1e5;
 constexpr double kSymbolReach_px = 14;
 
@@ -27,7 +29,9 @@ float DepthOf(const MovedObject& object, double reach_px, const ViewParameters& 
                                  : 1 / matrices.pixels_per_metre;
   const double height_m = glm::length(matrices.eye_ecef) - kEquatorialRadius_m;
   const double bulge_m = kBulge * std::clamp(height_m / kFarOut_m, 0.0, 1.0) * reach_px * metres_a_px;
-  const double nearer_m = std::clamp(bulge_m, kNearer * object.distance_m, kNearest * object.distance_m);
+  const double away = std::clamp((object.distance_m - kClose_m) / (kNotClose_m - kClose_m), 0.0, 1.0);
+  const double least = kNearerClose + away * (kNearer - kNearerClose);
+  const double nearer_m = std::clamp(bulge_m, least * object.distance_m, kNearest * object.distance_m);
   return DepthAt(matrices.clip_from_camera, view.projection, object.distance_m - nearer_m);
 }
 

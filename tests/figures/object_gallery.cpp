@@ -252,6 +252,51 @@ void Models(Gallery& gallery) {
       "objects-models", view, put, [] {}, 0.3);
 }
 
+// What types become: each with the name of its model, and two that fit no entry of their own.
+void Types(Gallery& gallery) {
+  const double ground_m = gallery.ground_m();
+  const auto put = [&] {
+    const auto one = [&](double east_m, double north_m, double up_m, EntityType type, uint8_t force) {
+      ObjectRecord record = gallery.At(east_m, north_m, ground_m + up_m, type, 60, 0);
+      record.force = force;
+      gallery.Put(record);
+    };
+    one(-34, 95, 16, kAirliner, 3);
+    one(-14, 62, 13, kFighter, 1);
+    one(2, 60, 11, {1, 2, 225, 85, 1, 0, 0}, 3);
+    one(16, 58, 12, {1, 2, 225, 21, 1, 0, 0}, 1);
+    one(34, 70, 13, {1, 2, 0, 200, 0, 0, 0}, 0);  // of the air, and no more is known
+    one(-14, 42, 0, kTank, 1);
+    one(-3, 40, 0, kTruck, 1);
+    one(6, 38, 0, {1, 1, 225, 81, 1, 0, 0}, 3);
+    one(12, 34, 0, {3, 1, 225, 1, 0, 0, 0}, 1);
+    one(17, 36, 2, {2, 1, 225, 1, 1, 0, 0}, 2);
+    one(28, 44, 2, {4, 1, 225, 1, 0, 0, 0}, 2);  // a kind that has no model
+  };
+  ViewParameters view = gallery.View(0, -2, ground_m + 7, 0, -1, 15);
+  view.frames = true;
+  view.label_format = std::make_shared<const LabelFormat>(*LabelFormat::Parse("{type}\\n{model}"));
+  gallery.Take(
+      "objects-types", view, put, [] {}, 0.3);
+}
+
+// Vehicles where the valley's floor ends, on a slope of 19 degrees, sent with no more than a rough height.
+void Slope(Gallery& gallery) {
+  constexpr double kEast_m = -9000, kHeight_m = 1600;
+  const auto put = [&] {
+    for (int i = 0; i < 9; ++i) {
+      ObjectRecord one = gallery.At(kEast_m + 30 - 16 * (i % 5), 16 + 13 * i, kHeight_m, i % 3 == 2 ? kTruck : kTank,
+                                    275 + 15 * (i % 3), 0);
+      one.force = static_cast<uint8_t>(1 + i % 2);
+      gallery.Put(one);
+    }
+  };
+  ViewParameters view = gallery.View(kEast_m + 75, -25, kHeight_m + 12, -25, -4, 10);
+  view.labels = false;
+  gallery.Take(
+      "objects-ground", view, put, [] {}, 0.5);
+}
+
 void Groups(Gallery& gallery) {
   const auto put = [&] {
     for (int i = 0; i < 900; ++i) {
@@ -274,6 +319,8 @@ int Run(const std::string& dataset, const std::string& folder) {
   Battle(gallery);
   Labels(gallery);
   Models(gallery);
+  Types(gallery);
+  Slope(gallery);
   Groups(gallery);
   return 0;
 }

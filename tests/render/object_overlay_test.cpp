@@ -112,5 +112,20 @@ TEST_F(ObjectOverlay, FromFarOutTheGlobeCutsNoLabel) {
   }
 }
 
+TEST_F(ObjectOverlay, CloseToTheEyeLabelsStandClearOfTheGroundBeforeTheirObject) {
+  // distance of the label over that of the object
+  const auto nearness = [&](double eye_m) {
+    list_.instances.clear();
+    batch_.Clear();
+    view_.eye_ecef = ToEcef({0, 0, 1000 + eye_m});
+    Put(0, 0, "A");
+    const ViewMatrices matrices = MatricesOf(view_, 0, 9000);
+    const float at_object = DepthAt(matrices.clip_from_camera, view_.projection, eye_m);
+    return static_cast<double>(at_object / Build().back().depth);
+  };
+  EXPECT_NEAR(nearness(100), 0.5, 0.01);
+  EXPECT_NEAR(nearness(8000), 0.97, 0.03) << "an object behind a hill has no label before it";
+}
+
 }  // namespace
 }  // namespace belvedere
