@@ -197,7 +197,7 @@ std::string BuildReportLine(const BuildReport& report) {
 }
 
 std::string DescribeDataset(const Dataset& dataset) {
-  std::string text = fmt::format("{}: dataset of version {}, built {}, {:.1f} MB\n", dataset.path(), kDatasetVersion,
+  std::string text = fmt::format("{}: dataset of version {}, built {}, {:.1f} MB\n", dataset.path(), dataset.version(),
                                  dataset.build_time(), static_cast<double>(dataset.bytes()) / 1e6);
   for (const LayerRecord& layer : dataset.layers()) {
     text += fmt::format("layer {} ({}): {} pages, {:.1f} MB, levels 0 to {}\n", layer.name, LayerKindName(layer.kind),
@@ -235,7 +235,7 @@ std::string DescribeDatasetJson(const Dataset& dataset) {
     pages += layer.pages;
     layers.push_back(std::move(entry));
   }
-  json out = {{"version", kDatasetVersion},
+  json out = {{"version", dataset.version()},
               {"build_time", dataset.build_time()},
               {"bytes", dataset.bytes()},
               {"pages", pages},

@@ -53,7 +53,7 @@ std::string Facts(const Dataset& dataset, const BuildReport& report) {
     out += fmt::format("<tr><th>{}</th><td>{}</td></tr>", name, value);
   };
   row("built", fmt::format("{} by belvedere-build {}", Escape(dataset.build_time()), BELVEDERE_VERSION));
-  row("format", fmt::format("version {}", kDatasetVersion));
+  row("format", fmt::format("version {}", dataset.version()));
   row("size", fmt::format("{} pages, {}", Count(report.pages), Bytes(report.bytes)));
   row("read", fmt::format("{} of source pixels, unpacked", Bytes(report.bytes_read)));
   const std::string rounds =

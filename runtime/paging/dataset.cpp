@@ -29,6 +29,7 @@ class LmdbDataset final : public Dataset {
   const std::string& path() const override { return path_; }
   const std::vector<LayerRecord>& layers() const override { return stack_->metadata().layers; }
   const std::string& build_time() const override { return stack_->metadata().build_time; }
+  int version() const override { return stack_->metadata().version; }
   int64_t bytes() const override { return stack_->bytes(); }
 
   bool Exists(int layer, Quadcode node) const override {

@@ -108,6 +108,7 @@ class Dataset {
   virtual const std::string& path() const = 0;
   virtual const std::vector<LayerRecord>& layers() const = 0;
   virtual const std::string& build_time() const = 0;  // ISO 8601, UTC
+  virtual int version() const = 0;                    // of its format, as it was written
   virtual int64_t bytes() const = 0;                  // size of the stores
   std::optional<int> FindLayer(std::string_view name) const;
   std::optional<int> FindLayer(LayerKind kind) const;  // the first of that kind

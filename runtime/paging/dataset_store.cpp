@@ -166,6 +166,7 @@ Result<Metadata> FromJson(std::string_view text) {
                            kOldestDatasetVersion, kDatasetVersion);
     }
     Metadata metadata;
+    metadata.version = version;
     metadata.build_time = in.at("build_time").get<std::string>();
     metadata.id = in.value("id", std::string());
     metadata.over = in.value("over", std::string());

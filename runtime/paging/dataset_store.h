@@ -61,6 +61,7 @@ struct Metadata {
   std::string over{};  // of a change: id of the store under it
   // The file beside the store with the features of its vector layers; empty where it has none.
   std::string features{};
+  int version = kDatasetVersion;  // as it was read; what is written is of kDatasetVersion
 };
 
 // An object, and back. FromJson throws where it is damaged.

@@ -68,11 +68,16 @@ Result<std::unique_ptr<LiveDataset>> LiveDataset::Open(const std::string& path) 
 LiveDataset::LiveDataset(std::shared_ptr<const Dataset> first)
     : path_(first->path()),
       build_time_(first->build_time()),
+      version_(first->version()),
       layers_(AsDeepAsCanBe(first->layers())),
       current_(std::move(first)) {}
 
 LiveDataset::LiveDataset(const LiveDataset& like, std::shared_ptr<const Dataset> dataset)
-    : path_(like.path_), build_time_(like.build_time_), layers_(like.layers_), current_(std::move(dataset)) {}
+    : path_(like.path_),
+      build_time_(like.build_time_),
+      version_(like.version_),
+      layers_(like.layers_),
+      current_(std::move(dataset)) {}
 
 std::string LiveDataset::StateOnDisk(const std::string& path) {
   std::string state;

@@ -51,6 +51,7 @@ class LiveDataset final : public Dataset {
   const std::string& path() const override { return path_; }
   const std::vector<LayerRecord>& layers() const override { return layers_; }
   const std::string& build_time() const override { return build_time_; }  // of the first
+  int version() const override { return version_; }                       // likewise
   int64_t bytes() const override { return current()->bytes(); }
   bool Exists(int layer, Quadcode node) const override;
   std::span<const uint64_t> Nodes(int layer) const override { return current()->Nodes(layer); }
@@ -86,6 +87,7 @@ class LiveDataset final : public Dataset {
   explicit LiveDataset(std::shared_ptr<const Dataset> first);
 
   const std::string path_, build_time_;
+  const int version_;
   const std::vector<LayerRecord> layers_;
   mutable std::shared_mutex mutex_;  // of current_
   std::shared_ptr<const Dataset> current_;

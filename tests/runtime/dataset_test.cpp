@@ -160,7 +160,10 @@ TEST(Dataset, AnotherVersionIsRefusedByName) {
   ASSERT_NE(text.find(own), std::string::npos);
   std::string older = text;
   older.replace(older.find(own), own.size(), fmt::format("\"version\": {}", kOldestDatasetVersion));
-  EXPECT_TRUE(store::FromJson(older).ok());
+  const auto read = store::FromJson(older);
+  ASSERT_TRUE(read.ok()) << read.message();
+  EXPECT_EQ(read->version, kOldestDatasetVersion);
+  EXPECT_EQ(store::FromJson(text)->version, kDatasetVersion);
   text.replace(text.find(own), own.size(), "\"version\": 77");
   const auto refused = store::FromJson(text);
   ASSERT_FALSE(refused.ok());
