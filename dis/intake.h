@@ -47,7 +47,7 @@ struct IntakeOptions {
   double scorch_s = 300;  // how long marks of detonations stay on the ground
 };
 
-// The record that an Entity State describes, as of state_time_s.
+// The record that an Entity State of that version of the protocol describes, as of state_time_s.
 ObjectRecord ToRecord(const EntityState& state, uint8_t version, double state_time_s, double received_s);
 
 class Intake {

@@ -307,6 +307,19 @@ void AddEvent(const SceneEvent& event, double now_s, const std::optional<EffectG
   }
 }
 
+EffectInstance ThinLine(const glm::dvec3& from_ecef, const glm::dvec3& to_ecef, float width_px,
+                        const std::array<uint8_t, 4>& from_colour, const std::array<uint8_t, 4>& to_colour) {
+  EffectInstance line;
+  line.from_ecef = from_ecef;
+  line.to_ecef = to_ecef;
+  line.from_m = line.to_m = 0;
+  line.least_px = width_px;
+  line.from_colour = from_colour;
+  line.to_colour = to_colour;
+  line.shape = Shape::kLine;
+  return line;
+}
+
 void AddTrail(std::span<const TrackPoint> track, const ObjectInstance& object, double now_s, double longest_s,
               std::vector<EffectInstance>& effects) {
   constexpr float kWidth_px = 0.9F;
@@ -315,14 +328,10 @@ void AddTrail(std::span<const TrackPoint> track, const ObjectInstance& object, d
   for (size_t i = track.size(); i-- > 0;) {
     const TrackPoint& point = track[i];
     if (point.time_s < now_s - longest_s) return;
-    EffectInstance& piece = effects.emplace_back();
-    piece.from_ecef = from;
-    piece.to_ecef = point.position_ecef;
-    piece.from_m = piece.to_m = 0;
-    piece.least_px = kWidth_px;
-    piece.from_colour = WithAlpha(object.look.colour, 0.8 * (1 - (now_s - from_s) / longest_s));
-    piece.to_colour = WithAlpha(object.look.colour, 0.8 * (1 - (now_s - point.time_s) / longest_s));
-    piece.shape = Shape::kLine;
+    const auto colour_at = [&](double time_s) {
+      return WithAlpha(object.look.colour, 0.8 * (1 - (now_s - time_s) / longest_s));
+    };
+    effects.push_back(ThinLine(from, point.position_ecef, kWidth_px, colour_at(from_s), colour_at(point.time_s)));
     from = point.position_ecef;
     from_s = point.time_s;
   }
@@ -334,16 +343,13 @@ void AddVector(const KinematicState& state, const ObjectInstance& object, double
   constexpr float kWidth_px = 0.9F;
   if (glm::length(object.velocity_mps) < kStationary_mps) return;
   const glm::dvec3 off = object.position_ecef - PoseAt(state, now_s).position_ecef;  // smoothed, or stood on the ground
+  const Colour colour = WithAlpha(object.look.colour, 0.9);
   glm::dvec3 from = object.position_ecef;
   for (int i = 1; i <= kPieces; ++i) {
-    EffectInstance& piece = effects.emplace_back();
-    piece.from_ecef = from;
-    piece.to_ecef = from = PoseAt(state, now_s + ahead_s * i / kPieces).position_ecef + off;
-    piece.velocity_mps = object.velocity_mps;
-    piece.from_m = piece.to_m = 0;
-    piece.least_px = kWidth_px;
-    piece.from_colour = piece.to_colour = WithAlpha(object.look.colour, 0.9);
-    piece.shape = Shape::kLine;
+    const glm::dvec3 to = PoseAt(state, now_s + ahead_s * i / kPieces).position_ecef + off;
+    effects.push_back(ThinLine(from, to, kWidth_px, colour, colour));
+    effects.back().velocity_mps = object.velocity_mps;
+    from = to;
   }
 }
 

@@ -51,6 +51,10 @@ struct EffectGround {
 void AddEvent(const SceneEvent& event, double now_s, const std::optional<EffectGround>& ground,
               std::vector<EffectInstance>& effects);
 
+// A line of so many pixels' width, whatever the distance.
+EffectInstance ThinLine(const glm::dvec3& from_ecef, const glm::dvec3& to_ecef, float width_px,
+                        const std::array<uint8_t, 4>& from_colour, const std::array<uint8_t, 4>& to_colour);
+
 // Where an object was, oldest first, as a line that fades backwards.
 struct TrackPoint {
   glm::dvec3 position_ecef{};

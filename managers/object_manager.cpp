@@ -35,7 +35,6 @@ constexpr double kListsPerSecond = 20.0;
 constexpr double kTypicalRadius_m = 10.0;  // of an object whose model is not in memory
 constexpr double kCoarsestDetail_px = 64;
 constexpr double kLeastAttached_px = 3;
-constexpr double kOutlinesHold_s = 1.0;
 
 uint64_t PackedType(const EntityType& type) {
   return uint64_t{type.kind} << 56 | uint64_t{type.domain} << 48 | uint64_t{type.country} << 32 |
@@ -63,17 +62,9 @@ class ObjectManager::Worker {
   void Step() {
     const std::shared_ptr<const ViewParameters> view = channel_->parameters.Get();
     if (view->number == 0) return;
-    // Without objects the list that says so is enough; outlines follow the view, and once a second the ground.
     const auto snapshot = objects_.Snapshot();
-    const bool none = (snapshot->objects.empty() && snapshot->events.empty()) || !view->draw_objects;
-    const bool outlines = view->watched != nullptr && !view->watched->empty();
     const double now_s = clock_.NowSeconds();
-    const bool same_view = view->number == still_view_ && now_s < still_until_s_;
-    if (none && published_none_ && (!(outlines || outlined_) || same_view)) return;
-    published_none_ = none;
-    outlined_ = outlines;
-    still_view_ = view->number;
-    still_until_s_ = now_s + kOutlinesHold_s;
+    if (!IsNews(*view, *snapshot, now_s)) return;
     const TraceSpan span("objects.list");
     DisplayList& list = channel_->object_lists.back();
     list.Clear();
@@ -84,12 +75,23 @@ class ObjectManager::Worker {
     list.time_s = now_s;
     ListPages pages(paging_, terrain_ != nullptr ? terrain_->type : DataType{0}, list);
     if (view->draw_objects) Build(*view, *snapshot, now_s, pages, list);
-    if (outlines) AddOutlines(*view, now_s, list);
+    AddOutlines(*view, now_s, list);
     pages.Finish(view_id_, ListPages::Queues::kObjects);
     list.statistics.pages_waiting = static_cast<uint32_t>(pages.pages_waiting());
     list.statistics.settled = pages.pages_waiting() == 0;
     list.statistics.build_ms = (clock_.NowSeconds() - now_s) * 1e3;
     channel_->object_lists.Publish();
+  }
+
+  // Without objects one list that says so is enough, until outlines of watch areas are others, are seen from elsewhere,
+  // or may lie on finer ground.
+  bool IsNews(const ViewParameters& view, const ObjectSnapshot& snapshot, double now_s) {
+    const bool none = (snapshot.objects.empty() && snapshot.events.empty()) || !view.draw_objects;
+    const bool moved = view.watched != nullptr && view.number != listed_view_;
+    const bool is_news = !none || !listed_none_ || moved || outlines_.AreDue(view.watched, now_s);
+    listed_none_ = none;
+    listed_view_ = view.number;
+    return is_news;
   }
 
   void Build(const ViewParameters& view, const ObjectSnapshot& snapshot, double now_s, ListPages& pages,
@@ -305,17 +307,13 @@ class ObjectManager::Worker {
     }
   }
 
-  void AddOutlines(const ViewParameters& view, double now_s, DisplayList& list) const {
-    const auto height = [&](double latitude_deg, double longitude_deg) {
+  void AddOutlines(const ViewParameters& view, double now_s, DisplayList& list) {
+    const GroundHeight ground = [&](double latitude_deg, double longitude_deg) {
       if (terrain_ == nullptr) return 0.0;
-      const auto ground = GroundUnder(paging_, terrain_->type, latitude_deg, longitude_deg);
-      return ground ? ground->height_m : 0.0;
+      const auto under = GroundUnder(paging_, terrain_->type, latitude_deg, longitude_deg);
+      return under ? under->height_m : 0.0;
     };
-    const glm::dvec3 eye_ecef = view.EyeAt(now_s);
-    for (const WatchArea& area : *view.watched) {
-      if (list.effects.size() + kRimPieces > kMostEffects) break;
-      AddOutline(area, eye_ecef, height, list.effects);
-    }
+    outlines_.Add(view.watched, view.EyeAt(now_s), now_s, ground, list.effects);
   }
 
   std::optional<EffectGround> GroundOf(const SceneEvent& event) const {
@@ -425,9 +423,9 @@ class ObjectManager::Worker {
   const Clock& clock_;
   const Layer* const terrain_;
   const Layer* const models_;
-  bool published_none_ = false, outlined_ = false;
-  uint64_t still_view_ = 0;   // parameters of the last list,
-  double still_until_s_ = 0;  // whose outlines are good until then
+  bool listed_none_ = false;  // of the last list
+  uint64_t listed_view_ = 0;
+  WatchOutlines outlines_;
   uint64_t number_ = 0;
   ShownObjects shown_;
   GroupSelection groups_;

@@ -1,25 +1,43 @@
-// Watch outlines: the rims of watch areas as lines on the ground, for the display list.
+// WatchOutlines: the rims of watch areas as lines on the ground, for the display lists of one view.
 //
-// Frames: ECEF, metres.
-// Threads: pure, as far as the RimHeight is.
+// Where the ground lies under them is looked up when the areas are others, and once a second, since finer pages come;
+// not for every list.
+//
+// Frames:  ECEF, metres; clock seconds.
+// Threads: the object manager's.
 #pragma once
 
+#include "runtime/earth/ground_height.h"
 #include "runtime/scene/display_list.h"
 #include "runtime/scene/importance.h"
 
-#include <functional>
+#include <array>
+#include <memory>
 #include <vector>
 
 namespace belvedere {
 
-inline constexpr int kRimPieces = 64;  // that one outline adds
+inline constexpr size_t kRimPieces = 64;  // that one outline adds
+inline constexpr double kRimHolds_s = 1.0;
 
-// Height of the drawn ground above the ellipsoid, m, at a latitude and longitude in degrees.
-using RimHeight = std::function<double(double latitude_deg, double longitude_deg)>;
+class WatchOutlines {
+ public:
+  using Areas = std::shared_ptr<const std::vector<WatchArea>>;
 
-// The rim is drawn a little above the ground, and more so the farther it is from the eye: what is drawn there is
-// coarser.
-void AddOutline(const WatchArea& area, const glm::dvec3& eye_ecef, const RimHeight& height,
-                std::vector<EffectInstance>& effects);
+  // Whether Add would look for the ground.
+  bool AreDue(const Areas& areas, double now_s) const { return areas != areas_ || now_s >= due_s_; }
+  // As many as kMostEffects leaves room for. A rim is drawn a little above the ground, and more so the farther it is
+  // from the eye: what is drawn there is coarser. areas: nullptr where there are none.
+  void Add(const Areas& areas, const glm::dvec3& eye_ecef, double now_s, const GroundHeight& ground,
+           std::vector<EffectInstance>& effects);
+
+ private:
+  using Rim = std::array<glm::dvec3, kRimPieces>;
+  static Rim RimOf(const WatchArea& area, const GroundHeight& ground);
+
+  Areas areas_;
+  std::vector<Rim> rims_;
+  double due_s_ = 0;
+};
 
 }  // namespace belvedere

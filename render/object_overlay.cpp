@@ -22,13 +22,18 @@ constexpr double kClose_m = 500, kNotClose_m = 5000;
 constexpr double kBulge = 3, kFarOut_m = 1e5;
 constexpr double kSymbolReach_px = 14;
 
-// reach_px: from the object to the overlay's end.
-float DepthOf(const MovedObject& object, double reach_px, const ViewParameters& view, const ViewMatrices& matrices) {
+// How much of kBulge counts for an eye at that height.
+double FarOutOf(const glm::dvec3& eye_ecef) {
+  return std::clamp(ToGeodetic(eye_ecef).height_m / kFarOut_m, 0.0, 1.0);
+}
+
+// For what ends reach_px from its object.
+float DepthOf(const MovedObject& object, double reach_px, double far_out, const ViewParameters& view,
+              const ViewMatrices& matrices) {
   const double metres_a_px = view.projection == Projection::kPerspective
                                  ? object.distance_m / matrices.pixels_per_radian
                                  : 1 / matrices.pixels_per_metre;
-  const double height_m = glm::length(matrices.eye_ecef) - kEquatorialRadius_m;
-  const double bulge_m = kBulge * std::clamp(height_m / kFarOut_m, 0.0, 1.0) * reach_px * metres_a_px;
+  const double bulge_m = kBulge * far_out * reach_px * metres_a_px;
   const double away = std::clamp((object.distance_m - kClose_m) / (kNotClose_m - kClose_m), 0.0, 1.0);
   const double least = kNearerClose + away * (kNearer - kNearerClose);
   const double nearer_m = std::clamp(bulge_m, least * object.distance_m, kNearest * object.distance_m);
@@ -49,15 +54,15 @@ bool Turns(SymbolShape shape) {
   return shape == SymbolShape::kAir || shape == SymbolShape::kSurface;
 }
 
-void AddLabel(const ObjectLabel& label, const MovedObject& object, const ViewParameters& view,
-              const ViewMatrices& matrices, const ObjectInstance& instance, OverlayBatch& batch) {
+// depth_at(reach_px)
+template <typename DepthAtReach>
+void AddLabel(const ObjectLabel& label, const MovedObject& object, float beside_px, OverlayBatch::Colour colour,
+              const DepthAtReach& depth_at, OverlayBatch& batch) {
   constexpr float kAscent_px = 11, kLeaderWidth_px = 1;
-  const OverlayBatch::Colour colour = instance.look.colour;
-  const float beside_px = BesideLabel(DrawnAsModel(instance, view), object.radius_px);
   const std::string text = ToLatin1(label.text);
   const LabelBox box = BoxOf(label.side, beside_px, SizeOf(text));
   const float reach_px = std::max({-box.left, box.right, -box.top, box.bottom});
-  const float depth = DepthOf(object, static_cast<double>(reach_px), view, matrices);
+  const float depth = depth_at(static_cast<double>(reach_px));
   const bool left_of = box.right < 0;
   if (box.has_leader) {
     const glm::vec2 end(left_of ? box.right + 2 : box.left - 2, 0.5F * (box.top + box.bottom));
@@ -78,6 +83,7 @@ void AddLabel(const ObjectLabel& label, const MovedObject& object, const ViewPar
 
 void AddObjectOverlay(const DisplayList& list, std::span<const MovedObject> objects, const ViewParameters& view,
                       const ViewMatrices& matrices, OverlayBatch& batch) {
+  const double far_out = FarOutOf(matrices.eye_ecef);
   // Farthest first, so that the nearer symbol covers the farther one.
   for (auto object = objects.rbegin(); object != objects.rend(); ++object) {
     const ObjectInstance& instance = list.instances[object->instance];
@@ -85,7 +91,7 @@ void AddObjectOverlay(const DisplayList& list, std::span<const MovedObject> obje
     if (shape == SymbolShape::kNone || DrawnAsModel(instance, view)) continue;
     const float angle = Turns(shape) ? HeadingOnScreen(*object, view) : 0.0F;
     const bool framed = instance.look.frame != 0 && instance.look.frame < kSymbolShapes;
-    const float depth = DepthOf(*object, kSymbolReach_px, view, matrices);
+    const float depth = DepthOf(*object, kSymbolReach_px, far_out, view, matrices);
     if (framed) {
       batch.AddSymbol(object->screen_px, depth, static_cast<SymbolShape>(instance.look.frame), 0, kFrame,
                       instance.look.colour);
@@ -96,7 +102,9 @@ void AddObjectOverlay(const DisplayList& list, std::span<const MovedObject> obje
   for (const MovedObject& object : objects) {
     const ObjectInstance& instance = list.instances[object.instance];
     if (instance.label == 0 || instance.label >= list.labels.size()) continue;
-    AddLabel(list.labels[instance.label], object, view, matrices, instance, batch);
+    const auto depth_at = [&](double reach_px) { return DepthOf(object, reach_px, far_out, view, matrices); };
+    AddLabel(list.labels[instance.label], object, BesideLabel(DrawnAsModel(instance, view), object.radius_px),
+             instance.look.colour, depth_at, batch);
   }
 }
 

@@ -4,15 +4,13 @@
 // Threads: pure functions, as far as the GroundHeight is.
 #pragma once
 
+#include "runtime/earth/ground_height.h"
+
 #include <glm/vec3.hpp>
 
-#include <functional>
 #include <optional>
 
 namespace belvedere {
-
-// Height of the ground above the ellipsoid, metres, at a latitude and longitude in degrees.
-using GroundHeight = std::function<double(double latitude_deg, double longitude_deg)>;
 
 struct SightLine {
   glm::dvec3 origin_ecef{};

@@ -31,6 +31,7 @@ UiThread::UiThread(const StationSpec& spec, const UiOptions& options, Station& s
       start_s_(clock.NowSeconds()),
       utc_at_start_s_(spec.utc_s.value_or(clock.UtcSeconds())),
       last_s_(start_s_) {
+  ShowWatched();
   for (const auto& [key, command] : spec.keys) {
     const Status bound = keys_.Bind(key, command);
     if (!bound.ok()) LogWarning("{}: keys.{}: {}", spec.file, key, bound.message());
@@ -84,7 +85,7 @@ ViewParameters UiThread::ParametersOf(const View& view, double now_s) {
   parameters.exaggeration = spec_.exaggeration;
   parameters.target_frame_ms = spec_.frame_ms;
   parameters.time_rate = spec_.time_rate;
-  parameters.watched = std::make_shared<const std::vector<WatchArea>>(watched_.Shown());
+  parameters.watched = outlined_;
   return parameters;
 }
 
@@ -146,7 +147,8 @@ void UiThread::Do(View& view, const Command& command) {
   if (watch != nullptr || std::holds_alternative<ForgetWatchedCommand>(command)) {
     if (watch != nullptr) Watch(view, *watch);
     if (watch == nullptr) watched_.Clear();
-    station_.Watch(watched_.areas());
+    if (watch == nullptr || watch->finished) station_.Watch(watched_.areas());
+    ShowWatched();
     for (View& other : views_) other.pilot->Apply(command, station_.ground());
     return;
   }
@@ -165,7 +167,12 @@ void UiThread::Watch(const View& view, const WatchCommand& command) {
   const auto under = [&](const PicturePoint& point) { return view.pilot->GroundUnder(point, station_.ground()); };
   const double dragged_px = std::hypot(command.rim.x_px - command.middle.x_px, command.rim.y_px - command.middle.y_px);
   if (dragged_px > kClick_px) watched_.Draw(under(command.middle), under(command.rim), command.finished);
-  if (dragged_px <= kClick_px && command.finished) watched_.Remove(under(command.middle));
+  if (dragged_px <= kClick_px && command.finished) watched_.Click(under(command.middle));
+}
+
+void UiThread::ShowWatched() {
+  std::vector<WatchArea> shown = watched_.Shown();
+  outlined_ = shown.empty() ? nullptr : std::make_shared<const std::vector<WatchArea>>(std::move(shown));
 }
 
 void UiThread::Advance(double now_s) {

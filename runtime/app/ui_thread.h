@@ -53,6 +53,7 @@ class UiThread {
   void TakeEvents(double longest_wait_s);
   void Do(View& view, const Command& command);
   void Watch(const View& view, const WatchCommand& command);
+  void ShowWatched();
   void Advance(double now_s);
   void ShowNotices(double now_s);
   Status TakePictures(const std::string& moment);
@@ -67,6 +68,7 @@ class UiThread {
   KeyMap keys_;
   TargetTracker targets_;
   WatchedPlaces watched_;
+  std::shared_ptr<const std::vector<WatchArea>> outlined_;  // nullptr: none
   std::vector<View> views_;
   std::vector<InputEvent> events_;
   const double start_s_;

@@ -15,16 +15,14 @@ void WatchedPlaces::Draw(const glm::dvec3& middle_ecef, const glm::dvec3& rim_ec
   areas_.push_back(area);
 }
 
-bool WatchedPlaces::Remove(const glm::dvec3& point_ecef) {
-  drawn_.reset();
+void WatchedPlaces::Click(const glm::dvec3& point_ecef) {
+  if (std::exchange(drawn_, std::nullopt)) return;
   auto smallest = areas_.end();
   for (auto area = areas_.begin(); area != areas_.end(); ++area) {
     if (glm::distance(area->centre_ecef, point_ecef) > area->radius_m) continue;
     if (smallest == areas_.end() || area->radius_m < smallest->radius_m) smallest = area;
   }
-  if (smallest == areas_.end()) return false;
-  areas_.erase(smallest);
-  return true;
+  if (smallest != areas_.end()) areas_.erase(smallest);
 }
 
 void WatchedPlaces::Clear() {

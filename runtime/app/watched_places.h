@@ -22,8 +22,8 @@ class WatchedPlaces {
 
   // The circle about `middle` through `rim`: shown while it is drawn, kept when it is finished.
   void Draw(const glm::dvec3& middle_ecef, const glm::dvec3& rim_ecef, bool finished);
-  // Takes away the smallest area that holds the point; false when none does.
-  bool Remove(const glm::dvec3& point_ecef);
+  // Ends what is being drawn without keeping it; where nothing is, takes away the smallest area that holds the point.
+  void Click(const glm::dvec3& point_ecef);
   void Clear();
 
   const std::vector<WatchArea>& areas() const { return areas_; }

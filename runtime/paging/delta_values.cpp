@@ -257,6 +257,7 @@ float SmallDiagonalError(const OwnSurface& surface, const Split& split, Post ape
 
 // The same of a relief, whose finest triangles hold so few points that rows are taken whole. Offsets are in points
 // from the post.
+static_assert(Relief::kPerCell == 2);
 constexpr Lane4 kFromTwoWest{-2, -1, 0, 1}, kFromOneWest{-1, 0, 1, 2};
 
 Lane4 Greater(const Lane4& a, const Lane4& b) {
@@ -323,9 +324,9 @@ float ErrorOfSplit(const Surface& surface, Post post, const Split& split, int le
     greatest = surface.ErrorBetween(post, split.end_a, split.end_b);
     if (level == kBisectionLevels - 1) return greatest;
   } else {
-    const bool within = split.apex_a.inside() && split.apex_b.inside();
-    if (level == kBisectionLevels - 1 && within) return DiamondError(surface, post, split);
     if (level == kBisectionLevels - 2) return SquareError(surface, post, split);
+    if (level == kBisectionLevels - 1 && split.apex_a.inside() && split.apex_b.inside())
+      return DiamondError(surface, post, split);
   }
   for (const Post apex : {split.apex_a, split.apex_b}) {
     if (!apex.inside()) continue;

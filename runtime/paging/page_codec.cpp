@@ -16,7 +16,7 @@ constexpr uint8_t kKindProperty = 4;
 constexpr uint16_t kFlagAlpha = 1;
 constexpr uint16_t kFlagDeltas = 2;
 constexpr int kShiftOfHeights = 8;  // place in the flags of how many low bits all heights have as 0
-constexpr uint16_t kMostHeightBits = 31;
+constexpr uint8_t kShiftMask = 31;
 constexpr int kElevationZstdLevel = 3;
 constexpr int kImageZstdLevel = 1;
 constexpr int kPropertyZstdLevel = 3;
@@ -156,7 +156,7 @@ std::vector<uint8_t> EncodeElevation(const ElevationPage& page) {
 Result<std::shared_ptr<ElevationPage>> DecodeElevation(std::span<const uint8_t> bytes) {
   if (Status status = CheckPageHeader(bytes, kKindElevation); !status.ok()) return status;
   const bool has_deltas = (bytes[6] & kFlagDeltas) != 0;
-  const uint32_t zero_bits = bytes[7] & kMostHeightBits;
+  const uint32_t zero_bits = bytes[7] & kShiftMask;
   const auto raw = UnwrapPage(bytes, kElevationRawBytes + (has_deltas ? kDeltaRawBytes : 0));
   if (!raw.ok()) return raw.status();
   constexpr size_t kSide = static_cast<size_t>(kElevationSide);
@@ -180,8 +180,10 @@ Result<std::shared_ptr<ElevationPage>> DecodeElevation(std::span<const uint8_t> 
       page->heights_mm[at] = static_cast<int32_t>(below + step);
     }
   }
-  for (int32_t& height_mm : page->heights_mm)
-    height_mm = static_cast<int32_t>(static_cast<uint32_t>(height_mm) << zero_bits);
+  if (zero_bits > 0) {
+    for (int32_t& height_mm : page->heights_mm)
+      height_mm = static_cast<int32_t>(static_cast<uint32_t>(height_mm) << zero_bits);
+  }
   if (has_deltas) {
     const std::span<const uint8_t> deltas = raw->subspan(kElevationRawBytes);
     page->deltas.greatest_m = GetFloat(deltas.data());

@@ -16,7 +16,8 @@ namespace belvedere {
 
 class StoreMapping {
  public:
-  static constexpr size_t kMappedAtOnce = size_t{64} << 10;  // around what is touched, at least
+  static constexpr size_t kMappedAtOnce = size_t{64}
+                                          << 10;  // around a page that is touched, where the file is in its cache
 
   // inside: an address that the mapping holds. Where the system does not tell where it lies, GiveBack does nothing.
   void Find(const void* inside);

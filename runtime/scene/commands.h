@@ -45,7 +45,7 @@ struct LookCommand {
   double right_fraction = 0, up_fraction = 0;
 };
 // A watch area: the circle on the ground about `middle` through `rim`, shown while it is drawn and kept when finished.
-// Where both are all but one point, the watch area that lies there is taken away instead.
+// Where both are all but one point, what is being drawn is given up, or the watch area that lies there is taken away.
 struct WatchCommand {
   PicturePoint middle, rim;
   bool finished = true;

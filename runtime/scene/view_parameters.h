@@ -70,13 +70,14 @@ struct ViewParameters {
   bool on_ground = true;  // land vehicles and people stand on the drawn ground, whatever height they say
   bool on_sea = true;     // and ships on the sea
   bool labels = true;
-  std::shared_ptr<const LabelFormat> label_format;        // nullptr: marking and flight level
-  std::shared_ptr<const std::vector<WatchArea>> watched;  // outlined on the ground; nullptr: none
-  bool groups = true;                                     // many objects that are close together as one symbol
-  bool frames = false;                                    // symbols in a frame whose shape says whose they are
-  bool effects = true;                                    // smoke, fire, lights, marks on the ground
-  double trails_s = 0;                                    // how far back the way of each object is drawn; 0: not
-  double vectors_s = 0;                                   // how far ahead
+  std::shared_ptr<const LabelFormat> label_format;  // nullptr: marking and flight level
+  std::shared_ptr<const std::vector<WatchArea>>
+      watched;           // outlined on the ground; nullptr: none. The same as long as they are
+  bool groups = true;    // many objects that are close together as one symbol
+  bool frames = false;   // symbols in a frame whose shape says whose they are
+  bool effects = true;   // smoke, fire, lights, marks on the ground
+  double trails_s = 0;   // how far back the way of each object is drawn; 0: not
+  double vectors_s = 0;  // how far ahead
   bool hud = true;
   bool sky = true;
   bool wireframe = false;

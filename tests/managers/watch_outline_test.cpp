@@ -8,13 +8,19 @@
 namespace belvedere {
 namespace {
 
-TEST(WatchOutlineTest, TheRimLiesOnTheGroundAtTheRadius) {
+WatchOutlines::Areas Of(std::vector<WatchArea> areas) {
+  return std::make_shared<const std::vector<WatchArea>>(std::move(areas));
+}
+
+TEST(WatchOutlinesTest, TheRimLiesOnTheGroundAtTheRadius) {
   for (const Geodetic& place : {Geodetic{46, 8, 500}, Geodetic{90, 0, 500}, Geodetic{-10, 180, 500}}) {
     const WatchArea area{ToEcef(place), 20'000};
+    WatchOutlines outlines;
     std::vector<EffectInstance> effects;
-    AddOutline(
-        area, ToEcef({place.latitude_deg, place.longitude_deg, 1500}), [](double, double) { return 500.0; }, effects);
-    ASSERT_EQ(effects.size(), static_cast<size_t>(kRimPieces));
+    const glm::dvec3 eye = ToEcef({place.latitude_deg, place.longitude_deg, 1500});
+    outlines.Add(
+        Of({area}), eye, 0, [](double, double) { return 500.0; }, effects);
+    ASSERT_EQ(effects.size(), kRimPieces);
     for (size_t i = 0; i < effects.size(); ++i) {
       EXPECT_NEAR(glm::distance(effects[i].from_ecef, area.centre_ecef), 20'000, 100);
       EXPECT_NEAR(ToGeodetic(effects[i].from_ecef).height_m, 560, 15);  // a little above, for the eye is 20 km away
@@ -23,13 +29,35 @@ TEST(WatchOutlineTest, TheRimLiesOnTheGroundAtTheRadius) {
   }
 }
 
-TEST(WatchOutlineTest, AnAreaOfNoSizeHasNone) {
+TEST(WatchOutlinesTest, TheGroundIsLookedUpForOtherAreasAndOnceASecond) {
+  WatchOutlines outlines;
   std::vector<EffectInstance> effects;
-  AddOutline(
-      {{}, 10}, {}, [](double, double) { return 0.0; }, effects);
-  AddOutline(
-      {ToEcef({1, 2, 3}), 0}, {}, [](double, double) { return 0.0; }, effects);
+  size_t looks = 0;
+  const GroundHeight ground = [&](double, double) {
+    ++looks;
+    return 0.0;
+  };
+  const WatchOutlines::Areas areas = Of({{ToEcef({1, 2, 3}), 1000}});
+  outlines.Add(areas, {}, 10.0, ground, effects);
+  EXPECT_EQ(looks, kRimPieces);
+  outlines.Add(areas, {}, 10.9, ground, effects);
+  EXPECT_EQ(looks, kRimPieces);
+  EXPECT_EQ(effects.size(), 2 * kRimPieces);
+  outlines.Add(areas, {}, 11.1, ground, effects);
+  EXPECT_EQ(looks, 2 * kRimPieces);
+  outlines.Add(Of({{ToEcef({1, 2, 3}), 500}}), {}, 11.2, ground, effects);
+  EXPECT_EQ(looks, 3 * kRimPieces);
+}
+
+TEST(WatchOutlinesTest, AnAreaOfNoSizeHasNoneAndTheirNumberHasABound) {
+  WatchOutlines outlines;
+  std::vector<EffectInstance> effects;
+  const GroundHeight flat = [](double, double) { return 0.0; };
+  outlines.Add(Of({{{}, 10}, {ToEcef({1, 2, 3}), 0}}), {}, 0, flat, effects);
+  outlines.Add(nullptr, {}, 0, flat, effects);
   EXPECT_TRUE(effects.empty());
+  outlines.Add(Of(std::vector<WatchArea>(100, {ToEcef({1, 2, 3}), 10})), {}, 0, flat, effects);
+  EXPECT_EQ(effects.size(), kMostEffects);
 }
 
 }  // namespace

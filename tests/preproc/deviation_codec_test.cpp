@@ -1,6 +1,9 @@
 #include "preproc/deviation_codec.h"
 
+#include "runtime/paging/page_envelope.h"
+
 #include <gtest/gtest.h>
+#include <zstd.h>
 
 #include <limits>
 #include <random>
@@ -41,6 +44,25 @@ TEST(DeviationCodec, BadBytesAreRefused) {
   for (const size_t size : {size_t{0}, size_t{7}, size_t{8}, good.size() - 1}) {
     EXPECT_FALSE(DecodeDeviations({good.data(), size}).ok()) << size;
   }
+}
+
+// As docs/dataset-format.md has it, with a number that is whole in 64 bits alone.
+TEST(DeviationCodec, WhatIsTooFarForTheEarthIsRefused) {
+  std::vector<uint8_t> raw(static_cast<size_t>(kCells) * kCells * 16);
+  const auto encoded = [&] {
+    std::vector<uint8_t> packed(ZSTD_compressBound(raw.size()));
+    packed.resize(ZSTD_compress(packed.data(), packed.size(), raw.data(), raw.size(), 1));
+    const uint32_t crc = Crc32c(packed);
+    std::vector<uint8_t> bytes{'B', 'V', 'D', 'V'};
+    for (int i = 0; i < 4; ++i) bytes.push_back(static_cast<uint8_t>(crc >> (8 * i)));
+    bytes.insert(bytes.end(), packed.begin(), packed.end());
+    return bytes;
+  };
+  ASSERT_TRUE(DecodeDeviations(encoded()).ok());
+  raw[4 * static_cast<size_t>(kCells) * kCells] = 2;  // byte 4 of the first cell's low: 2^32
+  const auto refused = DecodeDeviations(encoded());
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.message().find("thousand kilometres"), std::string::npos) << refused.message();
 }
 
 }  // namespace
