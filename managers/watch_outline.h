@@ -24,8 +24,10 @@ class WatchOutlines {
  public:
   using Areas = std::shared_ptr<const std::vector<WatchArea>>;
 
-  // Whether Add would look for the ground.
-  bool AreDue(const Areas& areas, double now_s) const { return areas != areas_ || now_s >= due_s_; }
+  // Whether Add would give others, for the same eye.
+  bool AreDue(const Areas& areas, double now_s) const {
+    return areas != areas_ || (areas != nullptr && now_s >= due_s_);
+  }
   // As many as kMostEffects leaves room for. A rim is drawn a little above the ground, and more so the farther it is
   // from the eye: what is drawn there is coarser. areas: nullptr where there are none.
   void Add(const Areas& areas, const glm::dvec3& eye_ecef, double now_s, const GroundHeight& ground,

@@ -49,6 +49,21 @@ TEST(WatchOutlinesTest, TheGroundIsLookedUpForOtherAreasAndOnceASecond) {
   EXPECT_EQ(looks, 3 * kRimPieces);
 }
 
+TEST(WatchOutlinesTest, WithoutAreasNothingIsEverDue) {
+  WatchOutlines outlines;
+  std::vector<EffectInstance> effects;
+  EXPECT_FALSE(outlines.AreDue(nullptr, 1e6));
+  const WatchOutlines::Areas areas = Of({{ToEcef({1, 2, 3}), 1000}});
+  outlines.Add(
+      areas, {}, 5, [](double, double) { return 0.0; }, effects);
+  EXPECT_FALSE(outlines.AreDue(areas, 5.5));
+  EXPECT_TRUE(outlines.AreDue(areas, 7));
+  EXPECT_TRUE(outlines.AreDue(nullptr, 5.5)) << "what was there goes";
+  outlines.Add(
+      nullptr, {}, 6, [](double, double) { return 0.0; }, effects);
+  EXPECT_FALSE(outlines.AreDue(nullptr, 1e6));
+}
+
 TEST(WatchOutlinesTest, AnAreaOfNoSizeHasNoneAndTheirNumberHasABound) {
   WatchOutlines outlines;
   std::vector<EffectInstance> effects;
