@@ -65,15 +65,14 @@ class Joiner {
       : mesh_(mesh), number_(number), out_(out) {
     for (const Border border : kBorders) {
       Side& side = sides_[static_cast<size_t>(border)];
-      const bool polar =
-          (border == Border::kNorth && node.node.SouthWest().y + node.node.GridSize() == kGridNorthPole) ||
-          (border == Border::kSouth && node.node.SouthWest().y == 0);
+      const bool polar = (border == Border::kNorth && node.node.touches_north_pole()) ||
+                         (border == Border::kSouth && node.node.touches_south_pole());
       if (polar) {
         side.pole = border == Border::kNorth ? poles.north : poles.south;
         continue;
       }
       const uint64_t start = BorderLines::PositionOf(node.node, border, 0);
-      const uint64_t spacing = node.node.PostSpacing();
+      const uint64_t spacing = BorderLines::SpacingAlong(node.node, border);
       for (const BorderVertex& vertex : lines.Along(node.node, border)) {
         const uint64_t offset = vertex.position - start;
         if (offset % spacing == 0) side.at_post[offset / spacing] = &vertex;
@@ -200,9 +199,8 @@ class Joiner {
 uint32_t PoleCorner(std::span<const CutNode> nodes, std::span<const KeptMesh* const> meshes,
                     std::span<const uint32_t> ranked, bool north) {
   for (const uint32_t number : ranked) {
-    const uint32_t south = nodes[number].node.SouthWest().y;
-    const bool touches = north ? south + nodes[number].node.GridSize() == kGridNorthPole : south == 0;
-    if (!touches) continue;
+    const Quadcode node = nodes[number].node;
+    if (north ? !node.touches_north_pole() : !node.touches_south_pole()) continue;
     const auto post = static_cast<uint32_t>(PostOnBorder(north ? Border::kNorth : Border::kSouth, 0));
     const std::vector<ListVertex>& vertices = meshes[number]->vertices;
     const auto found =

@@ -24,7 +24,7 @@ PoleCorners PoleCornersOf(std::span<const CutNode> nodes, std::span<const KeptMe
                           std::span<const uint32_t> ranked);
 
 // Adds the drawn posts of a quadnode that lie on its borders. number: of the quadnode in the cut; rank: among all of
-// the cut, finest first.
+// the cut, narrowest first.
 void AddBorderPosts(const CutNode& node, const KeptMesh& mesh, uint32_t number, uint32_t rank, BorderLines& lines);
 
 // Appends to `out` the corners of the triangles at the quadnode's border, three a triangle.

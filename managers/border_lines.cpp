@@ -20,20 +20,23 @@ void BorderLines::Clear() {
 
 uint64_t BorderLines::LineOf(Quadcode node, Border border) {
   const GridPoint corner = node.SouthWest();
-  const uint32_t size = node.GridSize();
   switch (border) {
     case Border::kWest: return corner.x;
-    case Border::kEast: return static_cast<uint32_t>(corner.x + size);  // wraps at 180 E
+    case Border::kEast: return static_cast<uint32_t>(corner.x + node.GridWidth());  // wraps at 180 E
     case Border::kSouth: return kParallel | corner.y;
-    case Border::kNorth: return kParallel | (corner.y + size);
+    case Border::kNorth: return kParallel | (corner.y + node.GridHeight());
   }
   return 0;
+}
+
+uint32_t BorderLines::SpacingAlong(Quadcode node, Border border) {
+  return IsMeridian(border) ? node.PostSpacingNorth() : node.PostSpacingEast();
 }
 
 uint64_t BorderLines::PositionOf(Quadcode node, Border border, int post) {
   const GridPoint corner = node.SouthWest();
   const uint64_t start = IsMeridian(border) ? corner.y : corner.x;
-  return start + static_cast<uint64_t>(post) * node.PostSpacing();
+  return start + static_cast<uint64_t>(post) * SpacingAlong(node, border);
 }
 
 void BorderLines::Add(Quadcode node, Border border, int post, uint32_t corner, uint32_t rank) {

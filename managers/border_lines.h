@@ -1,9 +1,9 @@
 // BorderLines: the grid lines along which quadnodes of a cut meet, and the one vertex that each position on them has.
 //
 // Every quadnode adds the posts that it draws on its four borders. Seal then settles, for each position, the canonical
-// vertex: that of the finest quadnode, among equals that of the least quadcode. All quadnodes that touch a position in
-// their corner agree on it along the meridian and along the parallel, since the finest of them always has it in a
-// corner.
+// vertex: that of the narrowest quadnode, among equals that of the finest, then of the least quadcode. All quadnodes
+// that touch a position in their corner agree on it along the meridian and along the parallel, since the narrowest of
+// them always has it in a corner, also where rows change their width (quadcode.h).
 //
 // A corner names a vertex by its quadnode: (number of the quadnode in the cut) << 15 | number among the quadnode's own,
 // packed as ListVertex::place is.
@@ -44,7 +44,7 @@ struct BorderVertex {
 class BorderLines {
  public:
   void Clear();
-  // rank: the place of the quadnode among all of the cut, finest first (RankNodes).
+  // rank: the place of the quadnode among all of the cut, narrowest first (RankNodes).
   void Add(Quadcode node, Border border, int post, uint32_t corner, uint32_t rank);
   // No Add after this.
   void Seal();
@@ -56,6 +56,7 @@ class BorderLines {
   std::span<const BorderVertex> vertices() const { return vertices_; }
 
   static uint64_t PositionOf(Quadcode node, Border border, int post);
+  static uint32_t SpacingAlong(Quadcode node, Border border);
 
  private:
   static constexpr uint64_t kParallel = uint64_t{1} << 32;

@@ -1,5 +1,6 @@
 #include "managers/cut.h"
 
+#include "managers/ground_bounds.h"
 #include "runtime/earth/ellipsoid.h"
 
 #include <glm/common.hpp>
@@ -20,48 +21,18 @@ constexpr double kShareBesideMap =
     0.005;                              // likewise beside an orthographic picture, where nothing shrinks with distance
 constexpr double kLeastStretch = 0.02;  // straight down is never quite straight down for all of a quadnode
 constexpr double kNearest_m = 0.5;
-constexpr float kRootPriority = 1e6F;                // roots first: without them nothing is drawn
-constexpr int kBoxLevel = 4;                         // from here on a box around the ground is worth its making
-constexpr double kLargestCurvature_m = 6'400'000.0;  // radius of curvature of the ellipsoid, at most
+constexpr float kRootPriority = 1e6F;  // roots first: without them nothing is drawn
 constexpr double kLeastSlant = 0.03;
 constexpr double kMetresPerDegree = 111'320.0;
 constexpr float kGreatestPriority = 1e5F;
 
-// A box around the ground of a quadnode, tighter than its sphere where the quadnode is small beside the Earth.
-struct GroundBox {
-  glm::dvec3 center_ecef{};
-  LevelAxes axes;
-  glm::dvec3 half{};  // along east, north, up
-
-  explicit GroundBox(const TerrainPage& page) {
-    const GeoBox box = page.node.Box();
-    const double latitude_deg = 0.5 * (box.south_deg + box.north_deg);
-    const double longitude_deg = 0.5 * (box.west_deg + box.east_deg);
-    axes = LevelAxesAt(latitude_deg, longitude_deg);
-    const double half_radians = 0.5 * page.node.SizeDegrees() * kRadiansPerDegree;
-    const double least_latitude = std::min(std::abs(box.south_deg), std::abs(box.north_deg)) * kRadiansPerDegree;
-    const double high_m = page.max_height_m;
-    const double low_m = page.min_height_m;
-    const double radius = kLargestCurvature_m + std::max(0.0, high_m);
-    const double east = half_radians * std::cos(least_latitude) * radius;
-    const double north = half_radians * radius;
-    const double drop = (east * east + north * north) / (2.0 * kPolarRadius_m);  // of the rim below the middle
-    half = {east, north, 0.5 * (high_m - low_m + drop)};
-    center_ecef = ToEcef({latitude_deg, longitude_deg, 0.5 * (high_m + low_m - drop)});
-  }
-
-  double DistanceTo(const glm::dvec3& ecef) const {
-    const glm::dvec3 away = ecef - center_ecef;
-    const glm::dvec3 along(glm::dot(away, axes.east), glm::dot(away, axes.north), glm::dot(away, axes.up));
-    return glm::length(glm::max(glm::abs(along) - half, glm::dvec3(0)));
-  }
-  // Least of dot(point - from, direction) over the box.
-  double LeastAlong(const glm::dvec3& from, const glm::dvec3& direction) const {
-    const glm::dvec3 along(glm::dot(direction, axes.east), glm::dot(direction, axes.north),
-                           glm::dot(direction, axes.up));
-    return glm::dot(center_ecef - from, direction) - glm::dot(glm::abs(along), half);
-  }
-};
+// Of the quadnode's sides on the ground, in degrees of a great circle.
+double LongestSideDegrees(Quadcode node) {
+  if (node.Doublings() == 0) return node.HeightDegrees();
+  const GeoBox box = node.Box();
+  const double nearest_equator_deg = std::min(std::abs(box.south_deg), std::abs(box.north_deg));
+  return std::max(node.HeightDegrees(), node.WidthDegrees() * std::cos(nearest_equator_deg * kRadiansPerDegree));
+}
 
 struct Measure {
   double error_scale = 0;       // see CutNode
@@ -125,7 +96,7 @@ class Selection {
   }
 
  private:
-  // A quadnode that is drawn, or whose four children are.
+  // A quadnode that is drawn, or whose children are.
   struct Branch {
     Quadcode node;
     const TerrainPage* page = nullptr;
@@ -133,7 +104,7 @@ class Selection {
     double geometry_ratio = 0;  // what is left with all posts drawn, over the bound
     double ratio = 0;           // the greater of that and of texels
     double distance_m = 0;
-    std::optional<size_t> first_child;  // of four in a row
+    std::optional<size_t> first_child;  // of as many in a row as there are
   };
   struct Coarse {  // a branch that should be refined
     double ratio = 0;
@@ -165,7 +136,8 @@ class Selection {
   void Refine(size_t index) {
     const Branch parent = branches_[index];
     bool all = true, any_coming = false;
-    for (int which = 0; which < 4; ++which) {
+    const std::span<const int> children = parent.node.Children();
+    for (const int which : children) {
       const Quadcode child = parent.node.Child(which);
       if (pages_.Terrain(child) != nullptr) continue;
       const bool coming = pages_.Want({terrain_, child}, std::min(static_cast<float>(parent.ratio), kGreatestPriority));
@@ -174,11 +146,11 @@ class Selection {
       all = false;
       any_coming |= coming;
     }
-    if (any_coming) awaited_ += 3;
+    if (any_coming) awaited_ += static_cast<int>(children.size()) - 1;
     if (!all) return;
     branches_[index].first_child = branches_.size();
     --drawn_;
-    for (int which = 0; which < 4; ++which) Add(parent.node.Child(which));
+    for (const int which : children) Add(parent.node.Child(which));
   }
 
   // Front to back, nested.
@@ -191,8 +163,10 @@ class Selection {
       cut_.records.push_back({ListRecord::Kind::kCullBegin, static_cast<uint32_t>(cut_.volumes.size()), 0, 0});
       cut_.volumes.push_back({branch.page->center_ecef, branch.page->radius_m});
       if (const std::optional<size_t> first = branch.first_child) {
-        std::array<size_t, 4> children{*first, *first + 1, *first + 2, *first + 3};
-        Emit(children);
+        std::array<size_t, 4> children{};
+        const size_t count = branch.node.Children().size();
+        std::iota(children.begin(), children.end(), *first);
+        Emit(std::span(children).first(count));
       } else {
         Draw(branch);
       }
@@ -234,7 +208,7 @@ class Selection {
       const DataType type = view_.image_layers[i].type;
       if (view_.image_layers[i].shown()) finer = exists(type) || (Before(i) != type && exists(Before(i)));
     }
-    return finer ? TexelRatio(node.level(), measure) : 0.0;
+    return finer ? TexelRatio(node, measure) : 0.0;
   }
 
   // The step that the layer shows where that of the view is not there yet.
@@ -242,15 +216,15 @@ class Selection {
     return layer < before_.size() ? before_[layer] : view_.image_layers[layer].type;
   }
 
-  double TexelRatio(int level, const Measure& measure) const {
-    const double texel_m = std::ldexp(kTreeDegrees, -level) * kMetresPerDegree / kImageInner;
+  double TexelRatio(Quadcode node, const Measure& measure) const {
+    const double texel_m = LongestSideDegrees(node) * kMetresPerDegree / kImageInner;
     return texel_m * measure.metre_px * measure.texel_share * measure.share / view_.texel_px;
   }
 
   ImageUse ChooseImage(size_t layer, Quadcode node, const Measure& measure) {
     // The coarsest page whose texels are small enough is as good as any finer one.
     int level = node.level();
-    while (level > 0 && TexelRatio(level - 1, measure) <= 1.0) --level;
+    while (level > 0 && TexelRatio(node.Ancestor(level - 1), measure) <= 1.0) --level;
     const DataType type = view_.image_layers[layer].type;
     const std::optional<Quadcode> best = layers_.DeepestExisting(type, node.Ancestor(level));
     const bool behind = cut_.behind;
@@ -285,7 +259,7 @@ class Selection {
     const auto [type, best] = wanted;
     for (Quadcode source = best;; source = source.Parent()) {
       if (const std::optional<int> slot = pages_.Slot({type, source})) return SubRectangle(*slot, type, source, node);
-      const double ratio = TexelRatio(source.level(), measure) * std::ldexp(1.0, best.level() - source.level());
+      const double ratio = TexelRatio(source, measure) * std::ldexp(1.0, best.level() - source.level());
       const float priority = source.is_root() ? 0.5F * kRootPriority : static_cast<float>(std::min(ratio, 1e4));
       if (source == best || source.is_root()) {
         const bool coming = pages_.Want({type, source}, priority);
@@ -302,19 +276,19 @@ class Selection {
 
   // All of it lies beyond one side of the picture, and by kBesideGuard at least: it may be turned to before the next
   // list.
-  bool IsBeside(const GroundBox& box) const {
+  bool IsBeside(const GroundBounds& bounds) const {
     return std::any_of(outwards_.begin(), outwards_.end(),
-                       [&](const glm::dvec3& outward) { return box.LeastAlong(matrices_.eye_ecef, outward) > 0; });
+                       [&](const glm::dvec3& outward) { return bounds.LeastAlong(matrices_.eye_ecef, outward) > 0; });
   }
 
   Measure MeasureOf(const TerrainPage& page) const {
     const BoundingSphere sphere{page.center_ecef, page.radius_m};
-    std::optional<GroundBox> box;
-    if (sight_.perspective && page.node.level() >= kBoxLevel) box.emplace(page);
+    std::optional<GroundBounds> bounds;
+    if (sight_.perspective && GroundBounds::AreWorthTheirMaking(page.node)) bounds.emplace(page);
     Measure measure;
     if (matrices_.horizon.Hides(sphere)) {
       measure.share = 0;
-    } else if (matrices_.frustum.Hides(sphere) || (box && IsBeside(*box))) {
+    } else if (matrices_.frustum.Hides(sphere) || (bounds && IsBeside(*bounds))) {
       measure.share = sight_.perspective ? kShareBesidePicture : kShareBesideMap;
     }
     const glm::dvec3 center = (page.center_ecef - matrices_.eye_ecef) * view_.ecef_from_camera;  // camera axes
@@ -327,9 +301,9 @@ class Selection {
     }
     double nearest = std::max({glm::length(center) - page.radius_m, eye_height_m_ - page.max_height_m, kNearest_m});
     double nearest_depth = -center.z - page.radius_m;
-    if (box) {
-      nearest = std::max(nearest, box->DistanceTo(matrices_.eye_ecef));
-      nearest_depth = std::max(nearest_depth, box->LeastAlong(matrices_.eye_ecef, sight_.forward_ecef));
+    if (bounds) {
+      nearest = std::max(nearest, bounds->DistanceTo(matrices_.eye_ecef));
+      nearest_depth = std::max(nearest_depth, bounds->LeastAlong(matrices_.eye_ecef, sight_.forward_ecef));
     }
     nearest_depth = std::max(nearest_depth, sight_.cos_corner * nearest);
     measure.nearest_depth_m = nearest_depth;
@@ -346,7 +320,7 @@ class Selection {
   // square root of this.
   double GreatestSlant(const TerrainPage& page, double nearest_m) const {
     const double relief_m = page.max_height_m - page.min_height_m;
-    const double size_m = page.node.SizeDegrees() * kMetresPerDegree;
+    const double size_m = page.node.HeightDegrees() * kMetresPerDegree;
     return std::clamp((eye_height_m_ - page.min_height_m) / nearest_m + relief_m / size_m, kLeastSlant, 1.0);
   }
 
@@ -395,13 +369,13 @@ class Selection {
 }  // namespace
 
 ImageUse PartOf(const ImageUse& image, Quadcode node, Quadcode descendant) {
-  const int levels = descendant.level() - node.level();
-  const auto across = (int64_t{1} << levels) - 1;
-  const auto scale = static_cast<float>(std::ldexp(1.0, -levels));
+  const GridPoint from = node.SouthWest(), to = descendant.SouthWest();
+  const auto share = [](uint32_t of, uint32_t whole) { return static_cast<float>(of) / static_cast<float>(whole); };
   ImageUse part = image;
-  part.offset_u += image.scale * scale * static_cast<float>(descendant.column() & across);
-  part.offset_v += image.scale * scale * static_cast<float>(descendant.row() & across);
-  part.scale *= scale;
+  part.offset_u += image.scale_u * share(to.x - from.x, node.GridWidth());
+  part.offset_v += image.scale_v * share(to.y - from.y, node.GridHeight());
+  part.scale_u *= share(descendant.GridWidth(), node.GridWidth());
+  part.scale_v *= share(descendant.GridHeight(), node.GridHeight());
   return part;
 }
 

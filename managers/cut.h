@@ -1,10 +1,10 @@
 // Cut: the first stage of terrain selection. Chooses the quadnodes whose own posts and images are fine enough, walking
 // the 32 quadtrees from their roots.
 //
-// A quadnode is replaced by its four children when either is true within the view:
+// A quadnode is replaced by its children when either is true within the view:
 //   geometry: what is left with every post of its page drawn, error_m, is more than error_px pixels;
 //   texture:  a texel of its own image would span more than texel_px pixels, and the layer has finer pages there;
-// and all four children can be drawn: their terrain pages are in memory. Until then the quadnode itself is drawn and
+// and all children can be drawn: their terrain pages are in memory. Until then the quadnode itself is drawn and
 // the children are asked for. So a cut always covers the whole Earth, exactly once. The worst quadnode is replaced
 // first: where CutLimits end it, what is left over is the least that can be.
 //

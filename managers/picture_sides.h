@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 namespace belvedere {
 
@@ -34,6 +35,17 @@ class PictureSides {
     const float beyond_m = spread_m + guard * (glm::length(away) + spread_m);
     return std::any_of(inwards_.begin(), inwards_.begin() + count_,
                        [&](const glm::vec3& inward) { return glm::dot(away, inward) < -beyond_m; });
+  }
+
+  // The same of all that has these corners, and of what is within margin_m of it: the corners say it, for the share of
+  // the distance by which a place is beyond a side is least at one of them.
+  bool AreBeyond(std::span<const glm::vec3> corners, float margin_m, float guard) const {
+    return std::any_of(inwards_.begin(), inwards_.begin() + count_, [&](const glm::vec3& inward) {
+      return std::all_of(corners.begin(), corners.end(), [&](const glm::vec3& corner) {
+        const glm::vec3 away = corner - eye_;
+        return glm::dot(away, inward) < -(margin_m + guard * glm::length(away));
+      });
+    });
   }
 
  private:

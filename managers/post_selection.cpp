@@ -89,10 +89,17 @@ struct PostSelection::LocalView {
 
   glm::vec3 PlaceOfPost(Post post) const { return PlaceOf(page.vertices[static_cast<size_t>(post.index())]); }
 
-  // All triangles that the post splits lie beside the picture, and well so.
-  bool IsBeside(Post post, int level) const {
-    return sides.IsBeyond(PlaceOfPost(post), page.spread_m[static_cast<size_t>(level)],
-                          static_cast<float>(kBesideGuard));
+  // All triangles that the post splits, and what lies delta_m over or under them, lie beside the picture, and well so.
+  bool IsBeside(Post post, int level, float delta_m) const {
+    constexpr auto kGuard = static_cast<float>(kBesideGuard);
+    if (sides.IsBeyond(PlaceOfPost(post), page.spread_m[static_cast<size_t>(level)], kGuard)) return true;
+    std::array<glm::vec3, 4> corners{};
+    size_t count = 0;
+    const Split split = SplitAt(post);
+    for (const Post corner : {split.end_a, split.end_b, split.apex_a, split.apex_b}) {
+      if (corner.inside()) corners[count++] = PlaceOfPost(corner);
+    }
+    return sides.AreBeyond(std::span(corners).first(count), delta_m, kGuard);
   }
 
   // Least depth of any point of the triangles that the post splits.
@@ -167,7 +174,7 @@ void PostSelection::Test(Post post, int level, const LocalView& view) {
     error *= corners.share_of_greatest;
     least_depth_m = std::max(least_depth_m, corners.least_depth_m);
   }
-  if (error * stay > least_depth_m && view.sides.any() && view.IsBeside(post, level)) {
+  if (error * stay > least_depth_m && view.sides.any() && view.IsBeside(post, level, delta_m)) {
     error *= static_cast<float>(kShareBesidePicture);
     left_out_beside_ |= error * stay <= least_depth_m;
   }

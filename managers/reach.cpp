@@ -6,9 +6,10 @@ namespace belvedere {
 namespace {
 
 struct Extent {
-  uint32_t west, south, size;
-  explicit Extent(Quadcode node) : west(node.SouthWest().x), south(node.SouthWest().y), size(node.GridSize()) {}
-  uint32_t north() const { return south + size; }
+  uint32_t west, south, width, height;
+  explicit Extent(Quadcode node)
+      : west(node.SouthWest().x), south(node.SouthWest().y), width(node.GridWidth()), height(node.GridHeight()) {}
+  uint32_t north() const { return south + height; }
 };
 
 bool Touch(const Extent& a, const Extent& b) {
@@ -16,7 +17,7 @@ bool Touch(const Extent& a, const Extent& b) {
   if (a.south == 0 && b.south == 0) return true;
   if (a.north() == kGridNorthPole && b.north() == kGridNorthPole) return true;
   // Unsigned: longitudes wrap.
-  return b.west - a.west <= a.size || a.west - b.west <= b.size;
+  return b.west - a.west <= a.width || a.west - b.west <= b.width;
 }
 
 // Adds those of `others` that touch one of `of`.

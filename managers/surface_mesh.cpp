@@ -10,9 +10,10 @@
 namespace belvedere {
 namespace {
 
-// The nodes, finest first and then by quadcode.
+// The nodes, narrowest first, then finest, then by quadcode (border_lines.h).
 std::vector<uint32_t> RankNodes(std::span<const CutNode> nodes) {
   struct Key {
+    uint32_t width;
     int coarseness;
     Quadcode node;
     uint32_t number;
@@ -20,7 +21,10 @@ std::vector<uint32_t> RankNodes(std::span<const CutNode> nodes) {
   };
   std::vector<Key> keys;
   keys.reserve(nodes.size());
-  for (uint32_t i = 0; i < nodes.size(); ++i) keys.push_back({-nodes[i].node.level(), nodes[i].node, i});
+  for (uint32_t i = 0; i < nodes.size(); ++i) {
+    const Quadcode node = nodes[i].node;
+    keys.push_back({node.GridWidth(), -node.level(), node, i});
+  }
   std::sort(keys.begin(), keys.end());
   std::vector<uint32_t> order;
   order.reserve(keys.size());

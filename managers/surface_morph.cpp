@@ -17,9 +17,10 @@ constexpr int kMostAncestors = 8;  // between a quadnode and what was drawn in i
 // Where the posts of a quadnode lie on the grid.
 struct PostGrid {
   GridPoint corner;
-  uint32_t spacing;
-  explicit PostGrid(Quadcode node) : corner(node.SouthWest()), spacing(node.PostSpacing()) {}
-  GridPoint At(uint32_t post) const { return {corner.x + post % kPosts * spacing, corner.y + post / kPosts * spacing}; }
+  uint32_t east, north;  // from post to post
+  explicit PostGrid(Quadcode node)
+      : corner(node.SouthWest()), east(node.PostSpacingEast()), north(node.PostSpacingNorth()) {}
+  GridPoint At(uint32_t post) const { return {corner.x + post % kPosts * east, corner.y + post / kPosts * north}; }
 };
 
 bool IsPole(GridPoint position) {
@@ -97,8 +98,8 @@ class OldSurface {
     const GridPoint position = PostGrid(node).At(static_cast<uint32_t>(corner.index()));
     const GridPoint origin = parent.SouthWest();
     return AmongPosts(parent,
-                      {static_cast<int>((position.x - origin.x) / parent.PostSpacing()),
-                       static_cast<int>((position.y - origin.y) / parent.PostSpacing())},
+                      {static_cast<int>((position.x - origin.x) / parent.PostSpacingEast()),
+                       static_cast<int>((position.y - origin.y) / parent.PostSpacingNorth())},
                       ancestors_left - 1);
   }
   std::optional<glm::dvec3> AmongPosts(Quadcode node, Post post, int ancestors_left) {

@@ -58,12 +58,13 @@ std::vector<GeoBox> ChangedExtents(std::span<const SourceRecord> before, std::sp
 
 bool Touches(std::span<const GeoBox> extents, LayerKind kind, Quadcode node) {
   // One more than the page holds of its neighbours.
-  const double margin_deg = kind == LayerKind::kElevation ? (kApron + 1) * node.SizeDegrees() / kCells
-                                                          : (kImageGutter + 1) * node.SizeDegrees() / kImageInner;
+  const double margin =
+      kind == LayerKind::kElevation ? double{kApron + 1} / kCells : double{kImageGutter + 1} / kImageInner;
+  const double margin_deg = margin * node.HeightDegrees(), east_margin_deg = margin * node.WidthDegrees();
   GeoBox box = node.Box();
-  box.west_deg -= margin_deg;
+  box.west_deg -= east_margin_deg;
   box.south_deg -= margin_deg;
-  box.east_deg += margin_deg;
+  box.east_deg += east_margin_deg;
   box.north_deg += margin_deg;
   return std::any_of(extents.begin(), extents.end(), [&](const GeoBox& extent) {
     if (Overlap(extent, box)) return true;

@@ -62,7 +62,7 @@ std::vector<Unmatched> MatchColours(const std::vector<RasterSource*>& sources, c
     if (!sources[place]->spec().match_colour) continue;
     const double spacing_deg = SpacingOf(sources, place);
     const LatticeRows lattice = SampleLattice(sources[place]->georeference().extent(), spacing_deg);
-    const std::vector<ColourPair> pairs = composite.ColourPairs(place, lattice, spacing_deg);
+    const std::vector<ColourPair> pairs = composite.ColourPairs(place, lattice, {spacing_deg, spacing_deg});
     if (pairs.size() >= size_t{kLeastPairs}) {
       sources[place]->SetColourFit(FitColours(pairs));
       continue;

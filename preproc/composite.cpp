@@ -20,7 +20,7 @@ constexpr double kLargestHeight_m = 2.0e6;
 int32_t QuantumOfLevel_mm(Quadcode node) {
   constexpr double kSteepest = 2e-5;
   constexpr int kCoarsest = 6;
-  const double spacing_mm = node.SizeDegrees() / kCells * kRadiansPerDegree * kEquatorialRadius_m * 1000.0;
+  const double spacing_mm = node.HeightDegrees() / kCells * kRadiansPerDegree * kEquatorialRadius_m * 1000.0;
   return int32_t{1} << std::clamp(static_cast<int>(std::floor(std::log2(spacing_mm * kSteepest))), 0, kCoarsest);
 }
 
@@ -36,6 +36,12 @@ int32_t QuantumOfSource_mm(double precision_m) {
 int32_t Millimetres(double height_m, int32_t quantum_mm) {
   const double height_mm = std::clamp(height_m, -kLargestHeight_m, kLargestHeight_m) * 1000.0;
   return quantum_mm * static_cast<int32_t>(std::lrint(height_mm / quantum_mm));
+}
+
+// Of posts, far from the poles.
+Spacing SpacingOfLevel(int level) {
+  const double degrees = std::ldexp(kTreeDegrees / kCells, -level);
+  return {degrees, degrees};
 }
 
 uint8_t Byte(float value) {
@@ -98,7 +104,7 @@ bool Composite::MayCover(const SourceSampler& sampler, const LatticeRows& lattic
                      [&](double longitude_deg) { return Covers(box, longitude_deg, std::max(*south, box.south_deg)); });
 }
 
-Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, double spacing_deg, int level, size_t first) {
+Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, const Spacing& spacing, int level, size_t first) {
   const size_t columns = lattice.longitudes_deg.size();
   const size_t count = columns * lattice.latitudes_deg.size();
   std::vector<double> undulation;  // once something needs it
@@ -110,7 +116,7 @@ Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, double spaci
   for (size_t which = first; which < samplers_.size(); ++which) {
     SourceSampler& sampler = samplers_[which];
     if (!MayCover(sampler, lattice)) continue;
-    const Samples<double> samples = sampler.Sample<double>(lattice, spacing_deg);
+    const Samples<double> samples = sampler.Sample<double>(lattice, spacing);
     if (sampler.source().is_above_sea_level()) find_undulation();
     const std::vector<double> datum_m =
         sampler.source().DatumHeights(lattice.latitudes_deg, lattice.longitudes_deg, undulation);
@@ -140,12 +146,12 @@ Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, double spaci
 }
 
 VoidFill::Ground Composite::GroundOf(size_t which, const LatticeRows& lattice, int level) {
-  const double spacing_deg = std::ldexp(kTreeDegrees / kCells, -level);
-  const Samples<double> samples = samplers_[which].Sample<double>(lattice, spacing_deg, false);
+  const Spacing spacing = SpacingOfLevel(level);
+  const Samples<double> samples = samplers_[which].Sample<double>(lattice, spacing, false);
   const std::vector<double> undulation = geoid_.Heights(lattice.latitudes_deg, lattice.longitudes_deg);
   const std::vector<double> datum_m =
       samplers_[which].source().DatumHeights(lattice.latitudes_deg, lattice.longitudes_deg, undulation);
-  VoidFill::Ground ground{{}, samples.values, HeightsAt(lattice, spacing_deg, level, which + 1).metres};
+  VoidFill::Ground ground{{}, samples.values, HeightsAt(lattice, spacing, level, which + 1).metres};
   for (size_t i = 0; i < samples.weights.size(); ++i) {
     const bool has_datum = !std::isnan(datum_m[i]);
     ground.source_m[i] += has_datum ? datum_m[i] : 0.0;
@@ -158,11 +164,11 @@ VoidFill::Ground Composite::GroundOf(size_t which, const LatticeRows& lattice, i
 }
 
 std::vector<int32_t> Composite::Heights_mm(Quadcode node) {
-  const double spacing_deg = node.SizeDegrees() / kCells;
+  const Spacing spacing = PostSpacingOf(node);
   const int32_t quantum_mm = QuantumOfLevel_mm(node);
   std::vector<int32_t> heights_mm(static_cast<size_t>(kElevationSide) * static_cast<size_t>(kElevationSide));
   for (const LatticeRows& lattice : PostLattice(node)) {
-    const Heights heights = HeightsAt(lattice, spacing_deg, node.level());
+    const Heights heights = HeightsAt(lattice, spacing, node.level());
     const size_t columns = lattice.longitudes_deg.size();
     for (size_t j = 0; j < lattice.rows.size(); ++j) {
       int32_t* out = &heights_mm[static_cast<size_t>(lattice.rows[j] * kElevationSide)];
@@ -177,17 +183,17 @@ std::vector<int32_t> Composite::Heights_mm(Quadcode node) {
 
 double Composite::HeightAt(double latitude_deg, double longitude_deg, std::span<const PlannedSource> plan) {
   const int level = SourceLevel(plan, Quadcode::Containing(latitude_deg, longitude_deg, kMaxLevel));
-  return HeightsAt({{longitude_deg}, {latitude_deg}, {0}}, std::ldexp(kTreeDegrees / kCells, -level), level).metres[0];
+  return HeightsAt({{longitude_deg}, {latitude_deg}, {0}}, SpacingOfLevel(level), level).metres[0];
 }
 
-Composite::Colours Composite::ColoursAt(const LatticeRows& lattice, double spacing_deg, size_t first) {
+Composite::Colours Composite::ColoursAt(const LatticeRows& lattice, const Spacing& spacing, size_t first) {
   const size_t count = lattice.longitudes_deg.size() * lattice.latitudes_deg.size();
   Colours colours{std::vector<float>(3 * count, 0.0f), {}, std::vector<bool>(samplers_.size(), false)};
   Remaining remaining(count);
   for (size_t which = first; which < samplers_.size() && remaining.Any(); ++which) {
     SourceSampler& sampler = samplers_[which];
     if (!MayCover(sampler, lattice)) continue;
-    Samples<float> samples = sampler.Sample<float>(lattice, spacing_deg);
+    Samples<float> samples = sampler.Sample<float>(lattice, spacing);
     ApplyFit(sampler.source().colour_fit(), samples.values);
     for (size_t i = 0; i < count; ++i) {
       if (samples.weights[i] <= 0) continue;
@@ -202,10 +208,10 @@ Composite::Colours Composite::ColoursAt(const LatticeRows& lattice, double spaci
 }
 
 std::vector<uint8_t> Composite::Texels(Quadcode node) {
-  const double spacing_deg = node.SizeDegrees() / kImageInner;
+  const Spacing spacing = TexelSpacingOf(node);
   std::vector<uint8_t> texels(4 * static_cast<size_t>(kImageSide) * static_cast<size_t>(kImageSide), 0);
   for (const LatticeRows& lattice : TexelLattice(node)) {
-    const Colours colours = ColoursAt(lattice, spacing_deg);
+    const Colours colours = ColoursAt(lattice, spacing);
     for (size_t which = 0; which < samplers_.size(); ++which) {
       if (colours.used[which]) samplers_[which].source().SetUsed();
     }
@@ -214,11 +220,11 @@ std::vector<uint8_t> Composite::Texels(Quadcode node) {
   return texels;
 }
 
-std::vector<ColourPair> Composite::ColourPairs(size_t place, const LatticeRows& lattice, double spacing_deg) {
+std::vector<ColourPair> Composite::ColourPairs(size_t place, const LatticeRows& lattice, const Spacing& spacing) {
   constexpr float kOpaque = 0.99f;
   const size_t which = samplers_.size() - 1 - place;
-  const Samples<float> own = samplers_[which].Sample<float>(lattice, spacing_deg, false);
-  const Colours below = ColoursAt(lattice, spacing_deg, which + 1);
+  const Samples<float> own = samplers_[which].Sample<float>(lattice, spacing, false);
+  const Colours below = ColoursAt(lattice, spacing, which + 1);
   std::vector<ColourPair> pairs;
   for (size_t i = 0; i < own.weights.size(); ++i) {
     const float covered = 1.0f - below.shares[i];

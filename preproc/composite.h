@@ -35,7 +35,7 @@ class Composite {
   std::vector<uint8_t> Texels(Quadcode node);
   // A source's colours, its place counted from the lowest, and those of what is below it, where both are opaque.
   // REQUIRES: kind is imagery.
-  std::vector<ColourPair> ColourPairs(size_t place, const LatticeRows& lattice, double spacing_deg);
+  std::vector<ColourPair> ColourPairs(size_t place, const LatticeRows& lattice, const Spacing& spacing);
   // The height, in metres, that the sources have at a place, at the finest level that the plan of them has there.
   double HeightAt(double latitude_deg, double longitude_deg, std::span<const PlannedSource> plan);
 
@@ -50,9 +50,9 @@ class Composite {
     std::vector<bool> used;     // a sampler
   };
   // Of the samplers from `first` on.
-  Colours ColoursAt(const LatticeRows& lattice, double spacing_deg, size_t first = 0);
+  Colours ColoursAt(const LatticeRows& lattice, const Spacing& spacing, size_t first = 0);
   // Of the samplers from `first` on; level: of the lattice.
-  Heights HeightsAt(const LatticeRows& lattice, double spacing_deg, int level, size_t first = 0);
+  Heights HeightsAt(const LatticeRows& lattice, const Spacing& spacing, int level, size_t first = 0);
   VoidFill::Ground GroundOf(size_t which, const LatticeRows& lattice, int level);
   bool MayCover(const SourceSampler& sampler, const LatticeRows& lattice) const;
 

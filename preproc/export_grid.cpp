@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace belvedere {
@@ -40,26 +41,33 @@ int FinestLevelIn(const Dataset& dataset, int layer, const GeoBox& box) {
 
 // The smallest box that holds all quadnodes of the level; it may go over 180 E.
 GeoBox BoxOfLevel(const Dataset& dataset, int layer, int level) {
-  std::vector<int64_t> columns;
+  // From west to east, in columns as wide as quadnodes are far from the poles.
+  std::vector<std::pair<int64_t, int64_t>> spans;
   int64_t south = std::numeric_limits<int64_t>::max(), north = 0;
   for (const uint64_t word : dataset.Nodes(layer)) {
     const Quadcode node = *Quadcode::FromWord(word);
     if (node.level() != level) continue;
-    columns.push_back(node.column());
+    const int doublings = node.Doublings();
+    spans.emplace_back(node.column() << doublings, (node.column() + 1) << doublings);
     south = std::min(south, node.row());
     north = std::max(north, node.row() + 1);
   }
-  std::sort(columns.begin(), columns.end());
-  // What lies outside is the widest gap between columns that follow each other round the Earth.
+  std::sort(spans.begin(), spans.end());
+  // What lies outside is the widest gap between spans that follow each other round the Earth.
   const int64_t around = int64_t{kTreeColumns} << level;
-  int64_t west = columns.front(), east = columns.back() + 1;
-  int64_t widest = west + around - east;
-  for (size_t i = 1; i < columns.size(); ++i) {
-    const int64_t gap = columns[i] - columns[i - 1] - 1;
-    if (gap <= widest) continue;
-    widest = gap;
-    west = columns[i];
-    east = columns[i - 1] + 1 + around;
+  int64_t west = spans.front().first, end = spans.front().second;
+  int64_t widest = 0, east = 0;
+  for (const auto& [from, to] : spans) {
+    if (from - end > widest) {
+      widest = from - end;
+      west = from;
+      east = end + around;
+    }
+    end = std::max(end, to);
+  }
+  if (spans.front().first + around - end >= widest) {
+    west = spans.front().first;
+    east = end;
   }
   const double size_deg = std::ldexp(kTreeDegrees, -level);
   return {static_cast<double>(west) * size_deg - 180, static_cast<double>(south) * size_deg - 90,

@@ -20,12 +20,13 @@ Result<BoundedPage> BoundedByChildren(const KnownPages& known, int layer, Quadco
                                       std::shared_ptr<ElevationPage> page) {
   std::array<BoundedPage, 4> finer;
   int depth = 0;
-  for (int which = 0; which < 4; ++which) {
+  for (const int which : node.Children()) {
     auto child = ReadBounded(known, layer, node.Child(which));
     if (!child.ok()) return child;
     depth = std::max(depth, child->depth);
     finer[static_cast<size_t>(which)] = std::move(*child);
   }
+  HalveWide(node, finer);
   const float stored_error_m = page->error_m;
   CellDeviations deviations = BoundPage(*page, &finer);
   if (page->error_m != stored_error_m)

@@ -36,18 +36,25 @@ void Append(LatticeRows& group, double latitude_deg, int row) {
 
 }  // namespace
 
+Spacing PostSpacingOf(Quadcode node) {
+  return {node.WidthDegrees() / kCells, node.HeightDegrees() / kCells};
+}
+Spacing TexelSpacingOf(Quadcode node) {
+  return {node.WidthDegrees() / kImageInner, node.HeightDegrees() / kImageInner};
+}
+
 std::vector<LatticeRows> PostLattice(Quadcode node) {
   const GridPoint corner = node.SouthWest();
-  const int64_t spacing = node.PostSpacing();
+  const int64_t east = node.PostSpacingEast(), north = node.PostSpacingNorth();
   Grouped groups;
   for (int i = 0; i < kElevationSide; ++i) {
-    const int64_t x = int64_t{corner.x} + (i - kApron) * spacing;
+    const int64_t x = int64_t{corner.x} + (i - kApron) * east;
     groups.plain.longitudes_deg.push_back(LongitudeOfGrid(x));
     groups.mirrored.longitudes_deg.push_back(LongitudeOfGrid(x + kTurn / 2));
   }
   groups.pole.longitudes_deg = {LongitudeOfGrid(0)};
   for (int j = 0; j < kElevationSide; ++j) {
-    const int64_t y = int64_t{corner.y} + (j - kApron) * spacing;
+    const int64_t y = int64_t{corner.y} + (j - kApron) * north;
     if (y == 0 || y == kPole) {
       Append(groups.pole, LatitudeOfGrid(y), j);
     } else if (y < 0 || y > kPole) {
@@ -61,11 +68,11 @@ std::vector<LatticeRows> PostLattice(Quadcode node) {
 
 LatticeRows PostsAround(Quadcode node, int west, int south, int columns, int rows) {
   const GridPoint corner = node.SouthWest();
-  const int64_t spacing = node.PostSpacing();
   LatticeRows posts;
-  for (int i = west; i < west + columns; ++i) posts.longitudes_deg.push_back(LongitudeOfGrid(corner.x + i * spacing));
+  for (int i = west; i < west + columns; ++i)
+    posts.longitudes_deg.push_back(LongitudeOfGrid(corner.x + i * int64_t{node.PostSpacingEast()}));
   for (int j = south; j < south + rows; ++j) {
-    const int64_t y = int64_t{corner.y} + j * spacing;
+    const int64_t y = int64_t{corner.y} + j * int64_t{node.PostSpacingNorth()};
     if (y >= 0 && y <= kPole) Append(posts, LatitudeOfGrid(y), j);
   }
   return posts;
@@ -73,12 +80,12 @@ LatticeRows PostsAround(Quadcode node, int west, int south, int columns, int row
 
 std::vector<LatticeRows> TexelLattice(Quadcode node) {
   const int level = node.level();
-  const int64_t around = (int64_t{kTreeColumns} << level) * kImageInner;
+  const int64_t around = Quadcode::ColumnsAround(level, node.row()) * kImageInner;
   const int64_t upright = (int64_t{kTreeRows} << level) * kImageInner;
-  const double degrees = node.SizeDegrees() / kImageInner;
+  const Spacing spacing = TexelSpacingOf(node);
   const auto longitude = [&](int64_t texel) {
     const int64_t wrapped = ((texel % around) + around) % around;
-    return (static_cast<double>(wrapped) + 0.5) * degrees - 180.0;
+    return (static_cast<double>(wrapped) + 0.5) * spacing.east_deg - 180.0;
   };
   Grouped groups;
   for (int i = 0; i < kImageSide; ++i) {
@@ -90,7 +97,7 @@ std::vector<LatticeRows> TexelLattice(Quadcode node) {
     const int64_t texel = node.row() * kImageInner + j - kImageGutter;
     const bool beyond = texel < 0 || texel >= upright;
     const int64_t row = texel < 0 ? -1 - texel : texel >= upright ? 2 * upright - 1 - texel : texel;
-    Append(beyond ? groups.mirrored : groups.plain, (static_cast<double>(row) + 0.5) * degrees - 90.0, j);
+    Append(beyond ? groups.mirrored : groups.plain, (static_cast<double>(row) + 0.5) * spacing.north_deg - 90.0, j);
   }
   return groups.Take();
 }

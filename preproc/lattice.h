@@ -15,6 +15,14 @@
 
 namespace belvedere {
 
+// Between positions along a parallel and along a meridian, degrees.
+struct Spacing {
+  double east_deg = 0, north_deg = 0;
+};
+// Of the posts of a quadnode, and of the texels of its image.
+Spacing PostSpacingOf(Quadcode node);
+Spacing TexelSpacingOf(Quadcode node);
+
 struct LatticeRows {
   std::vector<double> longitudes_deg;  // as many as the page has columns; 1 for a pole's row
   std::vector<double> latitudes_deg;

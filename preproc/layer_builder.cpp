@@ -41,7 +41,7 @@ void LayerBuilder::BuildImage(Quadcode node) {
   if (IsKnown(node)) return Take(node);
   if (node.level() < SourceLevel(layer_.plan, node)) {
     tbb::task_group children;
-    for (int which = 0; which < 4; ++which) children.run([this, node, which] { BuildImage(node.Child(which)); });
+    for (const int which : node.Children()) children.run([this, node, which] { BuildImage(node.Child(which)); });
     children.wait();
   }
   const std::vector<uint8_t> texels = composites_.local()->Texels(node);
@@ -58,11 +58,13 @@ BoundedPage LayerBuilder::BuildElevation(Quadcode node) {
   const bool has_children = node.level() < SourceLevel(layer_.plan, node);
   if (has_children) {
     tbb::task_group children;
-    for (size_t which = 0; which < 4; ++which) {
-      children.run([this, node, which, &finer] { finer[which] = BuildElevation(node.Child(static_cast<int>(which))); });
+    for (const int which : node.Children()) {
+      BoundedPage& child = finer[static_cast<size_t>(which)];
+      children.run([this, node, which, &child] { child = BuildElevation(node.Child(which)); });
     }
     children.wait();
     if (Stopped()) return {};
+    HalveWide(node, finer);
   }
   // After the children, for the source's pixels that they were made of are at hand now.
   auto page = std::make_shared<ElevationPage>();

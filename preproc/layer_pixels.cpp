@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -77,16 +78,19 @@ LayerPixels::LayerPixels(const Dataset& dataset, int layer, int level, Enlarge e
       kind_(dataset.layers()[static_cast<size_t>(layer)].kind) {}
 
 LayerPixels::Piece LayerPixels::PieceAt(int64_t node_column, int64_t node_row, int cells) const {
-  const Quadcode node = Quadcode::FromColumnRow(level_, node_column, node_row);
-  Quadcode page = node;
+  const int64_t around = int64_t{kTreeColumns} << level_;
+  const int64_t column = ((node_column % around) + around) % around;
+  const int wide = std::countr_zero(static_cast<uint64_t>(around / Quadcode::ColumnsAround(level_, node_row)));
+  Quadcode page = Quadcode::FromColumnRow(level_, column >> wide, node_row);
   while (!page.is_root() && !dataset_.Exists(layer_, page)) page = page.Parent();
-  const int doublings = level_ - page.level();
+  const int north = level_ - page.level(), east = north + page.Doublings();
   return {.column = node_column * cells,
           .row = node_row * cells,
           .page = page,
-          .doublings = doublings,
-          .nodes_west = node.column() - (page.column() << doublings),
-          .nodes_south = node.row() - (page.row() << doublings)};
+          .doublings_east = east,
+          .doublings_north = north,
+          .nodes_west = column - (page.column() << east),
+          .nodes_south = node_row - (page.row() << north)};
 }
 
 // Those of coarse pages first. Posts on a border belong to the quadnodes on both sides; a quadnode that only borders on
@@ -105,16 +109,16 @@ std::vector<LayerPixels::Piece> LayerPixels::PiecesFor(const PixelRange& range) 
       Piece piece = PieceAt(column, row, cells);
       const int64_t own_rows = cells + (row == rows - 1 ? border : 0);  // the pole's posts have no other owner
       piece.owner = piece.column + cells > range.first_column && piece.row + own_rows > range.first_row;
-      if (piece.owner) most_doublings = std::max(most_doublings, piece.doublings);
+      if (piece.owner) most_doublings = std::max(most_doublings, piece.doublings_north);
       pieces.push_back(piece);
     }
   }
   std::erase_if(pieces, [&](const Piece& piece) {
-    return (enlarge_ == Enlarge::kNothing && piece.doublings > 0) ||
-           (!piece.owner && piece.doublings >= most_doublings);
+    return (enlarge_ == Enlarge::kNothing && piece.doublings_north > 0) ||
+           (!piece.owner && piece.doublings_north >= most_doublings);
   });
   std::stable_sort(pieces.begin(), pieces.end(),
-                   [](const Piece& a, const Piece& b) { return a.doublings > b.doublings; });
+                   [](const Piece& a, const Piece& b) { return a.doublings_north > b.doublings_north; });
   return pieces;
 }
 
@@ -149,10 +153,10 @@ Status LayerPixels::ReadHeights(const PixelRange& range, std::span<float> out_m)
     const auto [left, right] = Within(range.first_column, range.width, piece.column, kPosts);
     const auto [bottom, top] = Within(range.first_row, range.height, piece.row, kPosts);
     for (int row = bottom; row < top; ++row) {
-      const Between y = PostIn(range.first_row + row - piece.row, piece.nodes_south, piece.doublings);
+      const Between y = PostIn(range.first_row + row - piece.row, piece.nodes_south, piece.doublings_north);
       float* const out = &out_m[static_cast<size_t>(row) * static_cast<size_t>(range.width)];
       for (int column = left; column < right; ++column) {
-        const Between x = PostIn(range.first_column + column - piece.column, piece.nodes_west, piece.doublings);
+        const Between x = PostIn(range.first_column + column - piece.column, piece.nodes_west, piece.doublings_east);
         out[column] = static_cast<float>(HeightAt(page, x, y));
       }
     }
@@ -170,15 +174,15 @@ Status LayerPixels::ReadColours(const PixelRange& range, std::span<uint8_t> out_
     const auto [bottom, top] = Within(range.first_row, range.height, piece.row, kImageInner);
     for (int row = bottom; row < top; ++row) {
       const int64_t cell_y = range.first_row + row - piece.row;
-      const Between y = TexelIn(cell_y, piece.nodes_south, piece.doublings);
+      const Between y = TexelIn(cell_y, piece.nodes_south, piece.doublings_north);
       uint8_t* const out = &out_rgba[4 * static_cast<size_t>(row) * static_cast<size_t>(range.width)];
       for (int column = left; column < right; ++column) {
         const int64_t cell_x = range.first_column + column - piece.column;
         uint8_t* const texel = out + 4 * static_cast<size_t>(column);
-        if (piece.doublings == 0) {
+        if (piece.doublings_east == 0) {
           std::copy_n(TexelAt(page, static_cast<int>(cell_x), static_cast<int>(cell_y)), 4, texel);
         } else {
-          WriteColour(page, TexelIn(cell_x, piece.nodes_west, piece.doublings), y, texel);
+          WriteColour(page, TexelIn(cell_x, piece.nodes_west, piece.doublings_east), y, texel);
         }
       }
     }

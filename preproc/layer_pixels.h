@@ -1,7 +1,8 @@
 // LayerPixels: windows of a layer's posts or texels at one level, put together from its pages.
 //
-// Where the layer has a page of the level a value is the one stored, also on the page's borders. Elsewhere the finest
-// page above it is enlarged, bilinear, as the run-time system draws it, or there is nothing: see Enlarge.
+// Where the layer has a page of the level a value is the one stored, also on the page's borders; near the poles, where
+// pages are wide (quadcode.h), between those stored. Elsewhere the finest page above it is enlarged, bilinear, as the
+// run-time system draws it, or there is nothing: see Enlarge.
 //
 // Columns are counted from 180 W, taken round the Earth; rows from 90 S. Windows run row by row from the south-west.
 // Units: metres above the ellipsoid; sRGB and straight alpha.
@@ -43,13 +44,14 @@ class LayerPixels {
  private:
   static constexpr size_t kKeptPages = 64;
 
-  // A quadnode of the level, and the finest page there is of it: its own or an ancestor's.
+  // A square of the level, as large as its quadnodes are but near the poles, and the finest page there is of it: that
+  // of the quadnode that holds it, or an ancestor's.
   struct Piece {
     int64_t column = 0, row = 0;  // of the quadnode's first cell, in the range's numbering
     Quadcode page;
-    int doublings = 0;                        // the page is enlarged by 2^doublings
-    int64_t nodes_west = 0, nodes_south = 0;  // of the quadnode, within the page
-    bool owner = false;                       // of any post of the range; else it only borders on it
+    int doublings_east = 0, doublings_north = 0;  // the page is enlarged by 2^doublings either way
+    int64_t nodes_west = 0, nodes_south = 0;      // of the quadnode, within the page
+    bool owner = false;                           // of any post of the range; else it only borders on it
   };
   Piece PieceAt(int64_t node_column, int64_t node_row, int cells) const;
   std::vector<Piece> PiecesFor(const PixelRange& range) const;

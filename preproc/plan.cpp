@@ -54,7 +54,8 @@ int64_t CountNodesUnder(std::span<const PlannedSource> sources, Quadcode node) {
     return source.finest_level > node.level() && Overlap(source.extent, box);
   });
   int64_t count = 1;
-  for (int which = 0; which < 4 && !here.empty(); ++which) count += CountNodesUnder(here, node.Child(which));
+  if (here.empty()) return count;
+  for (const int which : node.Children()) count += CountNodesUnder(here, node.Child(which));
   return count;
 }
 

@@ -1,6 +1,7 @@
 // Plan: which quadnodes a layer gets, from where its sources lie and how fine they are.
 //
-// Level 0 has all 32 quadnodes. A quadnode has children, all four, where some source that is finer than it overlaps it.
+// Level 0 has all 32 quadnodes. A quadnode has children, all of them, where some source that is finer than it overlaps
+// it.
 //
 // Threads: pure functions.
 #pragma once

@@ -79,7 +79,8 @@ void CompareBorders(const Dataset& dataset, int layer, Quadcode node, const Elev
   const auto compare = [&](int64_t column, int64_t row, bool east) {
     if (row >= rows) return;
     const Quadcode neighbour = Quadcode::FromColumnRow(level, column, row);
-    if (!dataset.Exists(layer, neighbour)) return;
+    // Where rows change their width the filters of the two do too.
+    if (!dataset.Exists(layer, neighbour) || neighbour.Doublings() != node.Doublings()) return;
     const auto other = dataset.ReadElevation(layer, neighbour);
     if (!other.ok()) return;  // reported where it is read for itself
     for (int i = 0; i < kPosts; ++i) {
@@ -105,7 +106,7 @@ void VerifyNode(const Dataset& dataset, int layer, Quadcode node, Verification& 
     if (!dataset.Exists(layer, node.Parent())) {
       out.problems.push_back(fmt::format("layer {}: quadnode {} has no parent", record.name, node.ToString()));
     }
-    for (int which = 0; which < 4; ++which) {
+    for (const int which : node.Parent().Children()) {
       if (dataset.Exists(layer, node.Parent().Child(which))) continue;
       out.problems.push_back(fmt::format("layer {}: quadnode {} lacks a sibling", record.name, node.ToString()));
       break;

@@ -10,6 +10,7 @@ namespace belvedere {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMostUneven = 8;         // between positions, pixels one way over those the other way, at most
 constexpr double kWidestShrink = 64;      // pixels of a pyramid level between positions, at most
 constexpr float kLeastCoverage = 0.499f;  // of a height, for it to count; half a pixel's worth
 constexpr float kWhole = 0.9995f;         // a coverage that only rounding keeps from 1
@@ -35,7 +36,7 @@ SourceSampler::SourceSampler(RasterSource& source, LayerKind kind)
 }
 
 // Pixels between positions, measured at the source's middle longitude, and the pyramid level to take them from.
-SourceSampler::Scale SourceSampler::ScaleAt(double latitude_deg, double spacing_deg) {
+SourceSampler::Scale SourceSampler::ScaleAt(double latitude_deg, const Spacing& spacing) {
   const GeoBox& box = extent();
   const double margin = 0.02 * (box.north_deg - box.south_deg);
   const double lat = std::clamp(latitude_deg, box.south_deg + margin, box.north_deg - margin);
@@ -44,9 +45,14 @@ SourceSampler::Scale SourceSampler::ScaleAt(double latitude_deg, double spacing_
   const PixelPoint here = georeference_->ToPixel(lon, lat);
   const PixelPoint east = georeference_->ToPixel(lon + step, lat);
   const PixelPoint north = georeference_->ToPixel(lon, lat + (lat + step > 90 ? -step : step));
-  double x = std::max(std::abs(east.x - here.x), std::abs(north.x - here.x)) / step * spacing_deg;
-  double y = std::max(std::abs(east.y - here.y), std::abs(north.y - here.y)) / step * spacing_deg;
-  if (!std::isfinite(x) || !std::isfinite(y)) x = y = spacing_deg / georeference_->spacing_deg();
+  const double steps_east = spacing.east_deg / step, steps_north = spacing.north_deg / step;
+  double x = std::max(std::abs(east.x - here.x) * steps_east, std::abs(north.x - here.x) * steps_north);
+  double y = std::max(std::abs(east.y - here.y) * steps_east, std::abs(north.y - here.y) * steps_north);
+  if (!std::isfinite(x) || !std::isfinite(y)) x = y = spacing.north_deg / georeference_->spacing_deg();
+  // Close to a pole a source's pixels may crowd along parallels, and say the same.
+  const double most = kMostUneven * std::min(x, y);
+  x = std::min(x, most);
+  y = std::min(y, most);
   Scale scale;
   const double least = std::min(x, y);
   if (least >= 2) scale.pyramid_level = std::min(static_cast<int>(std::log2(least)), source_.pyramid_levels());
@@ -194,7 +200,7 @@ void SourceSampler::FindVoids(const Positions& positions, const Scale& scale, st
 }
 
 template <typename Number>
-Samples<Number> SourceSampler::Sample(const LatticeRows& lattice, double spacing_deg, bool feathered) {
+Samples<Number> SourceSampler::Sample(const LatticeRows& lattice, const Spacing& spacing, bool feathered) {
   const size_t columns = lattice.longitudes_deg.size();
   const size_t all_rows = lattice.latitudes_deg.size();
   Samples<Number> samples;
@@ -207,8 +213,8 @@ Samples<Number> SourceSampler::Sample(const LatticeRows& lattice, double spacing
     end = row + 1;
     if (lattice.latitudes_deg[row] < extent().south_deg || lattice.latitudes_deg[row] > extent().north_deg) continue;
     // Rows of one scale go together; a separable source has only one.
-    const Scale scale = ScaleAt(lattice.latitudes_deg[row], spacing_deg);
-    while (end < all_rows && (georeference_->separable() || ScaleAt(lattice.latitudes_deg[end], spacing_deg) == scale))
+    const Scale scale = ScaleAt(lattice.latitudes_deg[row], spacing);
+    while (end < all_rows && (georeference_->separable() || ScaleAt(lattice.latitudes_deg[end], spacing) == scale))
       ++end;
     const Positions positions = PositionsOf(lattice, row, end - row);
     const std::vector<Number> filtered = heights ? FilterHeights<Number>(positions, scale)
@@ -241,7 +247,7 @@ Samples<Number> SourceSampler::Sample(const LatticeRows& lattice, double spacing
   return samples;
 }
 
-template Samples<float> SourceSampler::Sample<float>(const LatticeRows&, double, bool);
-template Samples<double> SourceSampler::Sample<double>(const LatticeRows&, double, bool);
+template Samples<float> SourceSampler::Sample<float>(const LatticeRows&, const Spacing&, bool);
+template Samples<double> SourceSampler::Sample<double>(const LatticeRows&, const Spacing&, bool);
 
 }  // namespace belvedere

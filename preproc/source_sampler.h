@@ -33,9 +33,9 @@ class SourceSampler {
 
   RasterSource& source() const { return source_; }
   const GeoBox& extent() const { return georeference_->extent(); }
-  // spacing_deg: distance between posts or texels of the level. Number is double for heights, float for colours.
+  // spacing: between posts or texels of the level. Number is double for heights, float for colours.
   template <typename Number>
-  Samples<Number> Sample(const LatticeRows& lattice, double spacing_deg, bool feathered = true);
+  Samples<Number> Sample(const LatticeRows& lattice, const Spacing& spacing, bool feathered = true);
 
  private:
   struct Scale {
@@ -49,7 +49,7 @@ class SourceSampler {
     std::vector<double> x, y;
   };
 
-  Scale ScaleAt(double latitude_deg, double spacing_deg);
+  Scale ScaleAt(double latitude_deg, const Spacing& spacing);
   // Of a pixel of level 0, measured at the source's middle longitude.
   PixelSize PixelSizeAt(double latitude_deg);
   Positions PositionsOf(const LatticeRows& lattice, size_t first_row, size_t rows);

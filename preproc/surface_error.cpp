@@ -62,7 +62,47 @@ void AddChild(const ElevationPage& parent, const BoundedPage& child, int which, 
   }
 }
 
+// east: 0 for the western half, 1 for the eastern.
+BoundedPage HalfOf(const BoundedPage& wide, int east) {
+  const ElevationPage& page = *wide.page;
+  auto half = std::make_shared<ElevationPage>(page);
+  BoundedPage out{half, CellDeviations(wide.deviations.size()), wide.depth};
+  for (int row = 0; row < kPosts; ++row) {
+    for (int column = 0; column < kPosts; ++column) {
+      const int west_of = (east * kCells + column) / 2;
+      const int32_t west_mm = page.at(west_of, row);
+      half->heights_mm[static_cast<size_t>((row + kApron) * kElevationSide + column + kApron)] =
+          column % 2 == 0 ? west_mm : static_cast<int32_t>((int64_t{west_mm} + page.at(west_of + 1, row)) / 2);
+    }
+  }
+  for (int row = 0; row < kCells; ++row) {
+    for (int column = 0; column < kCells; ++column) {
+      const int from = (east * kCells + column) / 2;
+      // Of the four corners of a cell one is so far off the plane of the others; cut anew in two, its surface moves by
+      // a third of that at most. Heights half-way are rounded besides.
+      const int64_t twist_mm =
+          int64_t{page.at(from, row)} + page.at(from + 1, row + 1) - page.at(from + 1, row) - page.at(from, row + 1);
+      const auto off = static_cast<int32_t>((2 * std::abs(twist_mm) + 2) / 3 + 1);
+      const Deviation& whole = wide.deviations[static_cast<size_t>(row * kCells + from)];
+      out.deviations[static_cast<size_t>(row * kCells + column)] = {whole.low - off, whole.high + off};
+    }
+  }
+  return out;
+}
+
 }  // namespace
+
+bool IsWide(Quadcode node, size_t child) {
+  return node.Child(static_cast<int>(child & ~size_t{1})).GridWidth() == node.GridWidth();
+}
+
+void HalveWide(Quadcode node, std::array<BoundedPage, 4>& children) {
+  for (const size_t west : {size_t{0}, size_t{2}}) {
+    if (!IsWide(node, west)) continue;
+    children[west + 1] = HalfOf(children[west], 1);
+    children[west] = HalfOf(children[west], 0);
+  }
+}
 
 CellDeviations BoundPage(ElevationPage& page, const std::array<BoundedPage, 4>* children) {
   int32_t lowest = page.at(0, 0), highest = page.at(0, 0);

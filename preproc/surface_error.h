@@ -34,8 +34,14 @@ struct BoundedPage {
   int depth = 0;  // levels of finer pages under it; of pages that were not made anew (known_pages.h) three at most
 };
 
+// A page at a pole has children as wide as itself (quadcode.h), each in the place of its western half.
+bool IsWide(Quadcode node, size_t child);
+// Makes two pages of each such child, as there are elsewhere: the posts that it lacks lie half-way between its own, and
+// the deviations say too how far its triangles are from those of the two.
+void HalveWide(Quadcode node, std::array<BoundedPage, 4>& children);
+
 // Fills min_m, max_m, block_errors_m and error_m of a page: over its posts, and all that is finer where there are
-// children (all four). Returns the deviations of its cells: none of where nothing is finer.
+// children, all four (HalveWide). Returns the deviations of its cells: none of where nothing is finer.
 CellDeviations BoundPage(ElevationPage& page, const std::array<BoundedPage, 4>* children);
 
 }  // namespace belvedere

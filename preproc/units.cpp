@@ -12,7 +12,7 @@ void AddUnits(int layer, std::span<const PlannedSource> plan, Quadcode node, std
     units.push_back({layer, node, pages});
     return;
   }
-  for (int which = 0; which < 4; ++which) AddUnits(layer, plan, node.Child(which), units);
+  for (const int which : node.Children()) AddUnits(layer, plan, node.Child(which), units);
 }
 
 }  // namespace

@@ -356,7 +356,8 @@ class Updater {
       if (Status status = writer.Remove(layer, node); !status.ok()) return status;
       gone_.insert({layer, node.word()});
     }
-    for (int which = 0; which < 4 && node.level() < kMaxLevel; ++which) {
+    if (node.level() == kMaxLevel) return {};
+    for (const int which : node.Children()) {
       if (Status status = RemoveGoneFrom(unchanged, layer, node.Child(which), writer); !status.ok()) return status;
     }
     return {};

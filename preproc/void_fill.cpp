@@ -16,13 +16,14 @@ constexpr int kWidestMargin = 4;  // columns to a row, near a pole
 constexpr double kMetresPerDegree = kEquatorialRadius_m * kRadiansPerDegree;
 constexpr GridRange kTile{0, 0, kPosts, kPosts};
 
-DeltaGrid GridOf(const VoidFill::Ground& ground, const LatticeRows& lattice, double spacing_deg) {
+DeltaGrid GridOf(const VoidFill::Ground& ground, const LatticeRows& lattice, Quadcode node) {
   DeltaGrid grid;
   grid.columns = static_cast<int>(lattice.longitudes_deg.size());
   grid.rows = static_cast<int>(lattice.latitudes_deg.size());
-  grid.row_m = spacing_deg * kMetresPerDegree;
+  grid.row_m = node.HeightDegrees() / kCells * kMetresPerDegree;
+  const double equator_m = node.WidthDegrees() / kCells * kMetresPerDegree;
   for (const double latitude_deg : lattice.latitudes_deg)
-    grid.column_m.push_back(grid.row_m * std::max(std::cos(latitude_deg * kRadiansPerDegree), 1e-6));
+    grid.column_m.push_back(equator_m * std::max(std::cos(latitude_deg * kRadiansPerDegree), 1e-6));
   grid.posts = ground.posts;
   grid.deltas_m.assign(ground.posts.size(), std::numeric_limits<double>::quiet_NaN());
   for (size_t i = 0; i < ground.posts.size(); ++i) {
@@ -58,14 +59,13 @@ GridRange Widened(const DeltaGrid& grid, const GridRange& voids, double reach_m)
 }  // namespace
 
 std::vector<double> VoidFill::Make(size_t source, Quadcode node, double reach_m) const {
-  const double spacing_deg = node.SizeDegrees() / kCells;
   LatticeRows lattice = PostsAround(node, kTile.west, kTile.south, kPosts, kPosts);
-  DeltaGrid grid = GridOf(ground_of_(source, lattice, node.level()), lattice, spacing_deg);
+  DeltaGrid grid = GridOf(ground_of_(source, lattice, node.level()), lattice, node);
   const GridRange voids = VoidsOf(grid);
   if (voids.west >= voids.east) return std::move(grid.deltas_m);
   const GridRange wide = Widened(grid, voids, reach_m);
   lattice = PostsAround(node, wide.west, wide.south, wide.east - wide.west, wide.north - wide.south);
-  grid = GridOf(ground_of_(source, lattice, node.level()), lattice, spacing_deg);
+  grid = GridOf(ground_of_(source, lattice, node.level()), lattice, node);
   const int first_row = -lattice.rows.front(), first_column = -wide.west;  // of the tile within
   FillVoids(grid, {first_column, first_row, first_column + kPosts, first_row + kPosts}, reach_m);
   std::vector<double> deltas_m;
@@ -97,9 +97,8 @@ double VoidFill::DeltaAt(size_t source, const Georeference& georeference, int le
   const Quadcode node = Quadcode::Containing(latitude_deg, longitude_deg, coarser);
   const auto tile = TileOf(source, node, kReachPixels * pixel_deg * kMetresPerDegree);
   const GeoBox box = node.Box();
-  const double posts_per_degree = kCells / node.SizeDegrees();
-  const double x = std::clamp((longitude_deg - box.west_deg) * posts_per_degree, 0.0, double{kCells});
-  const double y = std::clamp((latitude_deg - box.south_deg) * posts_per_degree, 0.0, double{kCells});
+  const double x = std::clamp((longitude_deg - box.west_deg) * kCells / node.WidthDegrees(), 0.0, double{kCells});
+  const double y = std::clamp((latitude_deg - box.south_deg) * kCells / node.HeightDegrees(), 0.0, double{kCells});
   const int column = std::min(static_cast<int>(x), kCells - 1), row = std::min(static_cast<int>(y), kCells - 1);
   double sum = 0, weights = 0;
   for (int corner = 0; corner < 4; ++corner) {

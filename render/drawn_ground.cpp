@@ -27,8 +27,8 @@ class Vertices {
   GridVertex At(uint32_t number, double east_at_pole) const {
     const ListVertex& vertex = (*list_.vertices)[number];
     const Quadcode node = list_.terrain_draws[vertex.draw()].node;
-    const uint32_t x = node.SouthWest().x + vertex.post() % kPosts * node.PostSpacing();
-    const uint32_t y = node.SouthWest().y + vertex.post() / kPosts * node.PostSpacing();
+    const uint32_t x = node.SouthWest().x + vertex.post() % kPosts * node.PostSpacingEast();
+    const uint32_t y = node.SouthWest().y + vertex.post() / kPosts * node.PostSpacingNorth();
     const bool pole = y == 0 || y == kGridNorthPole;
     return {pole ? east_at_pole : static_cast<double>(x - corner_.x),  // wraps at 180 E
             static_cast<double>(y - corner_.y), &vertex};
@@ -69,9 +69,9 @@ std::optional<double> DrawnGroundAt(const DisplayList& list, const Geodetic& pla
   if (draw == list.terrain_draws.end()) return std::nullopt;
   const Vertices vertices(list, *draw, since_list_s);
   const GeoBox box = draw->node.Box();
-  const double per_degree = draw->node.GridSize() / draw->node.SizeDegrees();
+  const double per_degree = draw->node.GridHeight() / draw->node.HeightDegrees();
   const double east = std::clamp(std::remainder(place.longitude_deg - box.west_deg, 360.0) * per_degree, 0.0,
-                                 static_cast<double>(draw->node.GridSize()));
+                                 static_cast<double>(draw->node.GridWidth()));
   const double north = (place.latitude_deg - box.south_deg) * per_degree;
   const auto indices = std::span(list.indices).subspan(draw->first_index, draw->index_count);
   for (size_t i = 0; i + 2 < indices.size(); i += 3) {

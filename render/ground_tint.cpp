@@ -32,8 +32,7 @@ uint32_t LevelColour(Quadcode node) {
 
 uint32_t ImageColour(const TerrainDraw& draw) {
   if (draw.images[0].slot < 0) return Pack(glm::vec3(0.5F), kStrength);
-  const int levels_up = -std::ilogb(draw.images[0].scale);
-  return LevelColour(draw.node.Ancestor(std::max(draw.node.level() - levels_up, 0)));
+  return LevelColour(draw.images[0].source);
 }
 
 }  // namespace

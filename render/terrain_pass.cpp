@@ -20,18 +20,33 @@ namespace {
 // DrawRow of shaders/terrain.vert.glsl.
 struct DrawRow {
   uint32_t south_west_x = 0, south_west_y = 0;
-  uint32_t post_spacing = 0;
+  uint32_t post_spacing_east = 0, post_spacing_north = 0;
   uint32_t frame = 0;
-  float per_grid_unit = 0;
   float per_rise_s = 0;
-  std::array<float, 2> fade_s{};
+  float per_grid_unit_east = 0, per_grid_unit_north = 0;
+  std::array<float, kFadingLayers> fade_s{};
+  std::array<float, kFadingLayers> from_page{};
   std::array<uint32_t, 4> tints{};
   std::array<glm::vec4, kFadingLayers> from{};
   std::array<glm::vec4, kMaxImageLayers> image{};
+  std::array<float, kMaxImageLayers> image_page{};
+  std::array<float, 2> unused{};
 };
-static_assert(sizeof(DrawRow) == 176);
+static_assert(sizeof(DrawRow) == 224);
 static_assert(sizeof(FrameRow) == 128);
 static_assert(sizeof(ListVertex) == 24);
+
+glm::vec4 RectangleOf(const ImageUse& use) {
+  return {use.offset_u, use.offset_v, use.scale_u, use.scale_v};
+}
+
+// From the quadnode's middle to a corner, radians, and a little more.
+double ReachOf(Quadcode node) {
+  const GeoBox box = node.Box();
+  const double nearest_equator_deg = box.south_deg < 0 ? box.north_deg : box.south_deg;
+  const double width_deg = node.WidthDegrees() * std::cos(nearest_equator_deg * kRadiansPerDegree);
+  return 0.75 * std::max(width_deg, node.HeightDegrees()) * kRadiansPerDegree;
+}
 
 constexpr uint8_t ModeOf(LayerRole role) {
   return static_cast<uint8_t>(static_cast<int>(role) + 1);
@@ -162,9 +177,8 @@ void TerrainPass::Show(const DisplayList& list) {
   SetDraws(list);
 }
 
-glm::vec4 TerrainPass::RowOf(const ImageUse& use) const {
-  if (use.slot < 0) return {0.0F, 0.0F, 0.0F, 0.0F};
-  return {use.offset_u, use.offset_v, use.scale, static_cast<float>(pages_.ArrayLayer(use.slot))};
+float TerrainPass::PageOf(const ImageUse& use) const {
+  return use.slot < 0 ? 0.0F : static_cast<float>(pages_.ArrayLayer(use.slot));
 }
 
 void TerrainPass::SetDraws(const DisplayList& list) {
@@ -177,22 +191,26 @@ void TerrainPass::SetDraws(const DisplayList& list) {
     DrawRow row;
     row.south_west_x = corner.x;
     row.south_west_y = corner.y;
-    row.post_spacing = draw.node.PostSpacing();
+    row.post_spacing_east = draw.node.PostSpacingEast();
+    row.post_spacing_north = draw.node.PostSpacingNorth();
     row.frame = draw.frame;
-    row.per_grid_unit = 1.0F / static_cast<float>(draw.node.GridSize());
+    row.per_grid_unit_east = 1.0F / static_cast<float>(draw.node.GridWidth());
+    row.per_grid_unit_north = 1.0F / static_cast<float>(draw.node.GridHeight());
     row.per_rise_s = draw.rise_s > 0 ? 1.0F / draw.rise_s : 0.0F;
     row.tints = TintsOf(draw, list);
     for (size_t i = 0; i < row.image.size(); ++i) {
-      row.image[i] = RowOf(draw.images[i]);
+      row.image[i] = RectangleOf(draw.images[i]);
+      row.image_page[i] = PageOf(draw.images[i]);
     }
     for (size_t i = 0; i < kFadingLayers; ++i) {
-      row.from[i] = RowOf(draw.from[i]);
+      row.from[i] = RectangleOf(draw.from[i]);
+      row.from_page[i] = PageOf(draw.from[i]);
       row.fade_s[i] = draw.fade_s[i];
     }
     rows.push_back(row);
     const GeoBox box = draw.node.Box();
-    middles_.push_back({UpAt(0.5 * (box.south_deg + box.north_deg), 0.5 * (box.west_deg + box.east_deg)),
-                        0.75 * draw.node.SizeDegrees() * kRadiansPerDegree});
+    middles_.push_back(
+        {UpAt(0.5 * (box.south_deg + box.north_deg), 0.5 * (box.west_deg + box.east_deg)), ReachOf(draw.node)});
   }
   Replace(draws_, rows);
   if (rows.size() > numbered_draws_) {

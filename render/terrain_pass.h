@@ -59,7 +59,7 @@ class TerrainPass {
   using Layers = TerrainPrograms::Layers;
   Layers LayersOf(uint32_t number, const TerrainDraw& draw, const ViewParameters& view, double since_list_s,
                   const glm::dvec3& sun_ecef) const;
-  glm::vec4 RowOf(const ImageUse& use) const;
+  float PageOf(const ImageUse& use) const;
   void SetDraws(const DisplayList& list);
   void WarmPrograms(const DisplayList& list, std::span<const uint32_t> draws, const ViewParameters& view);
   void SetMatrices(const DisplayList& list, const ViewMatrices& matrices);

@@ -127,8 +127,8 @@ std::string CoordinateName(int64_t value, int64_t step, bool is_latitude) {
 std::unique_ptr<ImagePage> DrawGraticule(Quadcode node, const PageText& text) {
   const GeoBox box = node.Box();
   const int64_t step = GridStep(node.level());
-  const Lines latitudes(box.south_deg, node.SizeDegrees(), step, true);
-  const Lines longitudes(box.west_deg, node.SizeDegrees(), step, false);
+  const Lines latitudes(box.south_deg, node.HeightDegrees(), step, true);
+  const Lines longitudes(box.west_deg, node.WidthDegrees(), step, false);
   const std::array<float, kImageSide> of_row = latitudes.Covers();
   const std::array<float, kImageSide> of_column = longitudes.Covers();
   auto page = MakeTransparentPage(kLine);

@@ -17,14 +17,17 @@ double Mix(double a, double b, double share) {
 struct Alignment {
   double first_column = 0;
   double first_row = 0;
-  double posts_per_cell = 1;
+  double columns_per_cell = 1;
+  double rows_per_cell = 1;
 };
 
 Alignment Align(Quadcode node, Quadcode ancestor) {
-  const double cell = ancestor.PostSpacing();
+  const double east = ancestor.PostSpacingEast();
+  const double north = ancestor.PostSpacingNorth();
   const GridPoint from = ancestor.SouthWest();
   const GridPoint to = node.SouthWest();
-  return {(to.x - from.x) / cell, (to.y - from.y) / cell, cell / node.PostSpacing()};
+  return {(to.x - from.x) / east, (to.y - from.y) / north, east / node.PostSpacingEast(),
+          north / node.PostSpacingNorth()};
 }
 
 struct Sample {
@@ -66,20 +69,21 @@ HeightField SampleHeights(Quadcode node, const ElevationPage* page, Quadcode hei
 
   const Alignment alignment = Align(node, heights_node);
   const bool own_heights = heights_node == node;
-  const double run_radians = 2.0 * heights_node.SizeDegrees() / kCells * kRadiansPerDegree;
+  const double run_east = 2.0 * heights_node.WidthDegrees() / kCells * kRadiansPerDegree;
+  const double run_north = 2.0 * heights_node.HeightDegrees() / kCells * kRadiansPerDegree;
   const double metres = kMetresPerMillimetre * exaggeration;
   for (int row = 0; row < kPosts; ++row) {
     const double latitude_deg =
-        GridPoint{0, node.SouthWest().y + static_cast<uint32_t>(row) * node.PostSpacing()}.latitude_deg();
+        GridPoint{0, node.SouthWest().y + static_cast<uint32_t>(row) * node.PostSpacingNorth()}.latitude_deg();
     const RowGeometry geometry = RowAt(latitude_deg);
     const bool at_pole = geometry.cos_latitude == 0;
-    const double east = at_pole ? 0 : metres / (run_radians * geometry.prime_vertical_m * geometry.cos_latitude);
-    const double north = at_pole ? 0 : metres / (run_radians * geometry.meridian_m);
+    const double east = at_pole ? 0 : metres / (run_east * geometry.prime_vertical_m * geometry.cos_latitude);
+    const double north = at_pole ? 0 : metres / (run_north * geometry.meridian_m);
     for (int column = 0; column < kPosts; ++column) {
       const Sample sample = own_heights
                                 ? SampleAtPost(*page, column, row)
-                                : SampleBetween(*page, alignment.first_column + column / alignment.posts_per_cell,
-                                                alignment.first_row + row / alignment.posts_per_cell);
+                                : SampleBetween(*page, alignment.first_column + column / alignment.columns_per_cell,
+                                                alignment.first_row + row / alignment.rows_per_cell);
       const auto index = static_cast<size_t>(row * kPosts + column);
       field.height_m[index] = at_pole && column > 0 ? field.height_m[index - 1] : sample.height_mm * metres;
       field.slope_east[index] = static_cast<float>(sample.rise_east_mm * east);

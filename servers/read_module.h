@@ -65,7 +65,7 @@ struct ReadModule {
   LayerRole role = LayerRole::kColour;  // of an image layer
   bool is_made = false;                 // Layer::is_made
   std::optional<StepOf> step;           // of a layer that changes with the time; that of the layer's name comes first
-  // Whether there is a page; the four children of a quadnode exist together or not at all.
+  // Whether there is a page; the children of a quadnode exist together or not at all.
   std::function<bool(Quadcode)> exists;
   std::function<Result<std::unique_ptr<Page>>(ReadContext&, Quadcode)> read;
   int threads = 1;    // that its server should have

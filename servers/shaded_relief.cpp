@@ -46,7 +46,8 @@ class Cells {
  public:
   Cells(const ElevationPage& heights, Quadcode node, const Geoid* sea)
       : slopes_(static_cast<size_t>(kCellsAcross) * kCellsAcross) {
-    const double step_deg = node.SizeDegrees() / kCells;
+    const double step_deg = node.HeightDegrees() / kCells;
+    const double step_east_deg = node.WidthDegrees() / kCells;
     const double step_radians = step_deg * kRadiansPerDegree;
     const double spacing_m = step_radians * RowAt(0).prime_vertical_m;
     const double raised = std::clamp(std::pow(spacing_m / kUnraisedSpacing_m, kRaisePower), 1.0, kMostRaised);
@@ -56,14 +57,14 @@ class Cells {
       const RowGeometry geometry = RowAt(latitude_deg);
       // Towards a pole posts crowd; their slopes along the parallel would be noise.
       const double cos_latitude = std::max(std::abs(geometry.cos_latitude), 0.02);
-      const double run_east_m = step_radians * geometry.prime_vertical_m * cos_latitude;
+      const double run_east_m = step_east_deg * kRadiansPerDegree * geometry.prime_vertical_m * cos_latitude;
       const double run_north_m = step_radians * geometry.meridian_m;
       for (int column = 0; column < kCellsAcross; ++column) {
         const auto post = [&](int east, int north) {
           return 1e-3 * heights.at(column - kApron + east, row - kApron + north);
         };
         const double sw = post(0, 0), se = post(1, 0), nw = post(0, 1), ne = post(1, 1);
-        const double longitude_deg = box.west_deg + (column - kApron + 0.5) * step_deg;
+        const double longitude_deg = box.west_deg + (column - kApron + 0.5) * step_east_deg;
         const double share =
             raised * static_cast<double>(LandShare(0.25 * (sw + se + nw + ne), sea, latitude_deg, longitude_deg));
         slopes_[static_cast<size_t>(row * kCellsAcross + column)] = {

@@ -56,7 +56,7 @@ std::unique_ptr<ImagePage> TintSlopes(const ElevationPage& heights, Quadcode nod
   const std::vector<TexelHeight> ground = HeightsAtTexels(heights, node, nullptr);
   auto page = std::make_unique<ImagePage>();
   page->texels.resize(ImagePage::MipOffset(kImageMipLevels, page->format));
-  const double step_deg = node.SizeDegrees() / kCells;
+  const double step_deg = node.HeightDegrees() / kCells;
   const TexelHeight* at = ground.data();
   uint8_t* texel = page->texels.data();
   for (int row = 0; row < kImageSide; ++row) {
@@ -65,7 +65,8 @@ std::unique_ptr<ImagePage> TintSlopes(const ElevationPage& heights, Quadcode nod
     // Towards a pole posts crowd; their slopes along the parallel would be noise.
     const double cos_latitude = std::max(geometry.cos_latitude, 0.02);
     const double step_radians = step_deg * kRadiansPerDegree;
-    const auto per_east_m = static_cast<float>(1 / (step_radians * geometry.prime_vertical_m * cos_latitude));
+    const double step_east_radians = node.WidthDegrees() / kCells * kRadiansPerDegree;
+    const auto per_east_m = static_cast<float>(1 / (step_east_radians * geometry.prime_vertical_m * cos_latitude));
     const auto per_north_m = static_cast<float>(1 / (step_radians * geometry.meridian_m));
     for (int column = 0; column < kImageSide; ++column, ++at) {
       const float east = at->rise_east_m * per_east_m;

@@ -93,11 +93,10 @@ std::optional<Heights> FinestHeights(ReadContext& context, const Dataset& datase
   }
 }
 
-// The quadnode of the same level beside it, so many columns east and rows north; none beyond the poles.
-std::optional<Quadcode> Beside(Quadcode node, int east, int north) {
-  const int64_t row = node.row() + north;
-  if (row < 0 || row >= int64_t{kTreeRows} << node.level()) return std::nullopt;
-  return Quadcode::FromColumnRow(node.level(), node.column() + east, row);
+// The coarsest quadnode beyond a border whose posts there are no further apart; none beyond the poles.
+std::optional<Quadcode> Beside(Quadcode node, Side side) {
+  if (side == Side::kSouth || side == Side::kNorth) return node.BesideParallel(side == Side::kNorth);
+  return Quadcode::FromColumnRow(node.level(), node.column() + (side == Side::kEast ? 1 : -1), node.row());
 }
 
 // Whether there is terrain: wherever any layer of the dataset has a page.
@@ -111,14 +110,11 @@ bool TerrainExists(const Dataset& dataset, Quadcode node) {
 
 // Lays the borders beyond which the heights are coarser on the surface there. REQUIRES: the input has heights.
 void LayBorders(ReadContext& context, const Dataset& dataset, int layer, DataType type, TerrainInput& input) {
-  struct Way {
-    Side side;
-    int east, north;
-  };
-  for (const Way way : {Way{Side::kWest, -1, 0}, {Side::kEast, 1, 0}, {Side::kSouth, 0, -1}, {Side::kNorth, 0, 1}}) {
-    const std::optional<Quadcode> beside = Beside(input.node, way.east, way.north);
+  for (const Side side : {Side::kWest, Side::kEast, Side::kSouth, Side::kNorth}) {
+    const std::optional<Quadcode> beside = Beside(input.node, side);
     if (!beside || input.heights_node.Contains(*beside)) continue;
-    if (dataset.Exists(layer, beside->Ancestor(input.heights_node.level()))) continue;
+    const std::optional<Quadcode> as_fine = Beside(input.heights_node, side);
+    if (as_fine && dataset.Exists(layer, *as_fine)) continue;
     TerrainInput coarser{
         .node = *beside, .heights = nullptr, .heights_node = *beside, .exaggeration = input.exaggeration};
     while (!TerrainExists(dataset, coarser.node)) coarser.node = coarser.node.Parent();
@@ -127,9 +123,8 @@ void LayBorders(ReadContext& context, const Dataset& dataset, int layer, DataTyp
       coarser.heights = &heights->pin.as<ElevationPage>();
       coarser.heights_node = heights->node;
     }
-    const Side facing = static_cast<Side>(static_cast<unsigned>(way.side) ^ 1U);
-    input.laid_ecef[static_cast<size_t>(way.side)] =
-        LaidOn(input.node, way.side, coarser.node, BorderPosts(coarser, facing));
+    const Side facing = static_cast<Side>(static_cast<unsigned>(side) ^ 1U);
+    input.laid_ecef[static_cast<size_t>(side)] = LaidOn(input.node, side, coarser.node, BorderPosts(coarser, facing));
   }
 }
 
@@ -172,8 +167,8 @@ ReadModule ModelModule(const ModelCatalogue& models) {
   module.layer = kModelLayer;
   module.kind = PageKind::kModel;
   module.max_level = kMaxLevel;
-  module.exists = [count = static_cast<int64_t>(models.entries().size())](Quadcode node) {
-    return node.level() == kMaxLevel && node.row() == 0 && node.column() < count;
+  module.exists = [count = static_cast<int>(models.entries().size())](Quadcode node) {
+    return ModelCatalogue::IsModelNode(node) && ModelCatalogue::ModelNumber(node) < count;
   };
   module.read = [&models](ReadContext&, Quadcode node) -> Result<std::unique_ptr<Page>> {
     Result<std::unique_ptr<ModelPage>> page = ReadModel(models, ModelCatalogue::ModelNumber(node));

@@ -149,14 +149,15 @@ std::vector<glm::dvec3> BorderPosts(const TerrainInput& input, Side side) {
 }
 
 std::vector<glm::dvec3> LaidOn(Quadcode node, Side side, Quadcode coarser, const std::vector<glm::dvec3>& posts) {
-  BELVEDERE_CHECK(coarser.level() <= node.level() && posts.size() == kPosts);
   const bool meridian = side == Side::kWest || side == Side::kEast;
   const auto along_of = [&](Quadcode of) { return meridian ? of.SouthWest().y : of.SouthWest().x; };
+  const auto spacing_of = [&](Quadcode of) { return meridian ? of.PostSpacingNorth() : of.PostSpacingEast(); };
+  BELVEDERE_CHECK(spacing_of(coarser) >= spacing_of(node) && posts.size() == kPosts);
   const uint32_t start = along_of(node) - along_of(coarser);  // wraps at 180 E
   std::vector<glm::dvec3> laid;
   laid.reserve(kPosts);
   for (uint32_t along = 0; along < kPosts; ++along) {
-    const double position = static_cast<double>(start + along * node.PostSpacing()) / coarser.PostSpacing();
+    const double position = static_cast<double>(start + along * spacing_of(node)) / spacing_of(coarser);
     const size_t first = std::min(static_cast<size_t>(position), size_t{kCells} - 1);
     const double share = position - static_cast<double>(first);
     laid.push_back((1.0 - share) * posts[first] + share * posts[first + 1]);

@@ -47,7 +47,7 @@ enum class Side : uint8_t { kWest, kEast, kSouth, kNorth };
 std::vector<glm::dvec3> BorderPosts(const TerrainInput& input, Side side);
 
 // The edge of `coarser`, whose border posts those are, at the posts of the quadnode's border on that side: between two
-// posts a straight line. REQUIRES: coarser lies beside the quadnode and is of its level or a coarser one.
+// posts a straight line. REQUIRES: coarser lies beside the quadnode, and its posts there are as far apart or further.
 std::vector<glm::dvec3> LaidOn(Quadcode node, Side side, Quadcode coarser, const std::vector<glm::dvec3>& posts);
 
 std::unique_ptr<TerrainPage> BuildTerrain(const TerrainInput& input);

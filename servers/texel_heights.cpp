@@ -36,13 +36,12 @@ std::vector<float> PostsAboveSea(const ElevationPage& page, Quadcode node, const
   std::vector<double> sea_m(posts_m.size());
   if (sea != nullptr) {
     const GeoBox box = node.Box();
-    const double step_deg = node.SizeDegrees() / kCells;
     std::array<double, kSide> latitudes_deg{};
     std::array<double, kSide> longitudes_deg{};
     for (size_t i = 0; i < kSide; ++i) {
       const double posts = static_cast<double>(i) - kApron;
-      latitudes_deg[i] = std::clamp(box.south_deg + posts * step_deg, -90.0, 90.0);
-      longitudes_deg[i] = box.west_deg + posts * step_deg;
+      latitudes_deg[i] = std::clamp(box.south_deg + posts * node.HeightDegrees() / kCells, -90.0, 90.0);
+      longitudes_deg[i] = box.west_deg + posts * node.WidthDegrees() / kCells;
     }
     sea_m = sea->Heights(latitudes_deg, longitudes_deg);
   }

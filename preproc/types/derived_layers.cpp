@@ -3,6 +3,7 @@
 #include "preproc/layer_builder.h"
 #include "preproc/types/page_network.h"
 
+#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -22,7 +23,9 @@ class ParentPages {
       to_come_.pop_back();
       auto bytes = work_.parent_page(node);
       if (!bytes) continue;
-      for (int which = 3; which >= 0 && node.level() < kMaxLevel; --which) to_come_.push_back(node.Child(which));
+      if (node.level() < kMaxLevel) {
+        for (const int which : std::views::reverse(node.Children())) to_come_.push_back(node.Child(which));
+      }
       if (!work_.is_known(node)) return StoredPage{node, std::move(*bytes)};
     }
     return std::nullopt;

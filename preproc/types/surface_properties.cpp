@@ -34,12 +34,12 @@ struct Surroundings {
   }
 };
 
-void MeasureSpacing(Surroundings& around, double step_deg) {
+void MeasureSpacing(Surroundings& around, Quadcode node) {
   const RowGeometry parallel = RowAt(around.latitude_deg);
-  const double step = step_deg * kRadiansPerDegree;
-  around.north_m = parallel.meridian_m * step;
+  const double east = node.WidthDegrees() / kCells * kRadiansPerDegree;
+  around.north_m = parallel.meridian_m * node.HeightDegrees() / kCells * kRadiansPerDegree;
   // At a pole posts fall together.
-  around.east_m = std::max(parallel.prime_vertical_m * parallel.cos_latitude * step, 0.01 * around.north_m);
+  around.east_m = std::max(parallel.prime_vertical_m * parallel.cos_latitude * east, 0.01 * around.north_m);
 }
 
 // value: from what is around a post to a byte for each channel.
@@ -50,15 +50,16 @@ std::shared_ptr<PropertyPage> Make(const ElevationPage& page, Quadcode node, Val
   made->channels = static_cast<int>(kChannels);
   made->values.resize(kChannels * kPlane);
   const GeoBox box = node.Box();
-  const double step_deg = node.SizeDegrees() / kCells;
+  const double step_north_deg = node.HeightDegrees() / kCells;
+  const double step_east_deg = node.WidthDegrees() / kCells;
   for (int row = kFirst; row <= kLast; ++row) {
     const int y = std::clamp(row, kFirst + 1, kLast - 1);
     Surroundings around;
-    around.latitude_deg = std::clamp(box.south_deg + y * step_deg, -90.0, 90.0);
-    MeasureSpacing(around, step_deg);
+    around.latitude_deg = std::clamp(box.south_deg + y * step_north_deg, -90.0, 90.0);
+    MeasureSpacing(around, node);
     for (int column = kFirst; column <= kLast; ++column) {
       const int x = std::clamp(column, kFirst + 1, kLast - 1);
-      around.longitude_deg = box.west_deg + x * step_deg;
+      around.longitude_deg = box.west_deg + x * step_east_deg;
       for (int i = 0; i < 9; ++i)
         around.heights_m[static_cast<size_t>(i)] = page.at(x - 1 + i % 3, y - 1 + i / 3) / 1000.0;
       const std::array<uint8_t, kChannels> bytes = value(around);

@@ -119,15 +119,23 @@ class Cutter {
     if (draft.is_complete) return {};
     draft.shown.clear();
     const GridPoint corner = node.SouthWest();
-    const int64_t half = node.GridSize() / 2;
-    auto rows = Divide(pieces, GridAxis::kY, corner.y + half);
+    auto rows = Divide(pieces, GridAxis::kY, corner.y + node.GridHeight() / 2);
     pieces.clear();
+    std::array<std::vector<Piece>, 4> of_child;
     for (int row = 0; row < 2; ++row) {
-      auto columns = Divide(rows[static_cast<size_t>(row)], GridAxis::kX, corner.x + half);
-      for (int column = 0; column < 2; ++column) {
-        Status status = Cut(node.Child(2 * row + column), std::move(columns[static_cast<size_t>(column)]));
-        if (!status.ok()) return status;
+      const auto west = static_cast<size_t>(2 * row);
+      auto& here = rows[static_cast<size_t>(row)];
+      if (node.Child(2 * row).GridWidth() == node.GridWidth()) {
+        of_child[west] = std::move(here);
+        continue;
       }
+      auto columns = Divide(here, GridAxis::kX, corner.x + node.GridWidth() / 2);
+      of_child[west] = std::move(columns[0]);
+      of_child[west + 1] = std::move(columns[1]);
+    }
+    for (const int which : node.Children()) {
+      Status status = Cut(node.Child(which), std::move(of_child[static_cast<size_t>(which)]));
+      if (!status.ok()) return status;
     }
     return {};
   }
@@ -144,9 +152,10 @@ class Cutter {
 
   static Draft DraftOf(Quadcode node, const std::vector<Piece>& pieces) {
     const GridPoint corner = node.SouthWest();
-    const int64_t side = node.GridSize();
+    const int64_t side = node.GridHeight();
     const auto on_border = [&](const GridPlace& place) {
-      return place.x == corner.x || place.x == corner.x + side || place.y == corner.y || place.y == corner.y + side;
+      return place.x == corner.x || place.x == corner.x + node.GridWidth() || place.y == corner.y ||
+             place.y == corner.y + side;
     };
     const int64_t most_off = side >> kToleranceLog2;
     Draft draft;
@@ -179,7 +188,7 @@ class Cutter {
   }
 
   static VectorPage PageOf(Quadcode node, const Draft& draft, const std::vector<Piece>& pieces) {
-    PageMaker maker(node, draft.is_complete ? 1 : std::max<int64_t>(1, node.GridSize() >> kGridLog2));
+    PageMaker maker(node, draft.is_complete ? 1 : std::max<int64_t>(1, node.GridHeight() >> kGridLog2));
     maker.page().is_complete = draft.is_complete;
     if (draft.is_complete) {
       for (const Piece& piece : pieces) maker.Add(*piece.feature, piece.parts);

@@ -110,10 +110,11 @@ void LineCorrection::Index(size_t segment) {
 
 // In their order, so that of two that are as near the same one counts in every page.
 std::vector<uint32_t> LineCorrection::SegmentsNear(const PostRaster& posts) const {
-  const int64_t side = (kElevationSide - 1) * posts.spacing;
+  constexpr int64_t kSteps = kElevationSide - 1;
+  const int64_t east = posts.west + kSteps * posts.east_spacing, north = posts.south + kSteps * posts.north_spacing;
   std::vector<uint32_t> near;
-  for (int64_t row = posts.south >> kCellLog2; row <= (posts.south + side) >> kCellLog2; ++row) {
-    for (int64_t column = posts.west >> kCellLog2; column <= (posts.west + side) >> kCellLog2; ++column) {
+  for (int64_t row = posts.south >> kCellLog2; row <= north >> kCellLog2; ++row) {
+    for (int64_t column = posts.west >> kCellLog2; column <= east >> kCellLog2; ++column) {
       const auto cell = cells_.find(CellOf(column, row));
       if (cell != cells_.end()) near.insert(near.end(), cell->second.begin(), cell->second.end());
     }
@@ -129,18 +130,21 @@ void LineCorrection::Reach(const Segment& segment, const PostRaster& posts, std:
   // The short way round the Earth.
   const int64_t turn = (posts.west - a.x + kUnitsAround / 2) >> 32;
   const int64_t west = posts.west - turn * kUnitsAround;
-  const auto first = [&](int64_t from, int64_t edge) { return std::max<int64_t>((from - edge) / posts.spacing, 0); };
-  const auto last = [&](int64_t to, int64_t edge) {
-    return std::min<int64_t>((to - edge) / posts.spacing, kElevationSide - 1);
+  const auto first = [](int64_t offset, int64_t spacing) { return std::max<int64_t>(offset / spacing, 0); };
+  const auto last = [](int64_t offset, int64_t spacing) {
+    return std::min<int64_t>(offset / spacing, kElevationSide - 1);
   };
-  for (int64_t row = first(reach.south, posts.south); row <= last(reach.north, posts.south); ++row) {
-    const int64_t y = posts.south + row * posts.spacing;
+  const int64_t first_column = first(reach.west - west, posts.east_spacing);
+  const int64_t last_column = last(reach.east - west, posts.east_spacing);
+  const int64_t last_row = last(reach.north - posts.south, posts.north_spacing);
+  for (int64_t row = first(reach.south - posts.south, posts.north_spacing); row <= last_row; ++row) {
+    const int64_t y = posts.south + row * posts.north_spacing;
     if (y < 0 || y > int64_t{kGridNorthPole}) continue;
     const glm::dvec2 metres = MetresPerUnit(y);
     const glm::dvec2 along = metres * glm::dvec2(b.x - a.x, b.y - a.y);
     const double squared = glm::dot(along, along);
-    for (int64_t column = first(reach.west, west); column <= last(reach.east, west); ++column) {
-      const glm::dvec2 at = metres * glm::dvec2(west + column * posts.spacing - a.x, y - a.y);
+    for (int64_t column = first_column; column <= last_column; ++column) {
+      const glm::dvec2 at = metres * glm::dvec2(west + column * posts.east_spacing - a.x, y - a.y);
       const double t = squared > 0 ? std::clamp(glm::dot(at, along) / squared, 0.0, 1.0) : 0.0;
       const double distance_m = glm::distance(at, t * along);
       Nearest& post = nearest[static_cast<size_t>(row * kElevationSide + column)];
@@ -151,12 +155,12 @@ void LineCorrection::Reach(const Segment& segment, const PostRaster& posts, std:
 }
 
 void LineCorrection::Apply(Quadcode node, std::vector<int32_t>& heights_mm) const {
-  const int64_t spacing = node.PostSpacing();
+  const int64_t east = node.PostSpacingEast(), north = node.PostSpacingNorth();
   // As at the equator, so that all pages of a level are corrected by the same lines.
-  const double spacing_m = static_cast<double>(spacing) * MetresPerDegree(0).y / kUnitsPerDegree;
+  const double spacing_m = static_cast<double>(north) * MetresPerDegree(0).y / kUnitsPerDegree;
   if (empty() || spacing_m > widest_m_) return;
-  const PostRaster posts{int64_t{node.SouthWest().x} - kApron * spacing, int64_t{node.SouthWest().y} - kApron * spacing,
-                         spacing};
+  const PostRaster posts{int64_t{node.SouthWest().x} - kApron * east, int64_t{node.SouthWest().y} - kApron * north,
+                         east, north};
   std::vector<Nearest> nearest(heights_mm.size());
   for (const uint32_t number : SegmentsNear(posts)) {
     if (spacing_m <= segments_[number].width_m) Reach(segments_[number], posts, nearest);

@@ -44,7 +44,8 @@ class LineCorrection {
   };
   // Posts of a page with its apron, grid units.
   struct PostRaster {
-    int64_t west = 0, south = 0, spacing = 0;
+    int64_t west = 0, south = 0;
+    int64_t east_spacing = 0, north_spacing = 0;
   };
   // Of a post: the line that is nearest.
   struct Nearest {

@@ -16,14 +16,16 @@ struct FrameRow {
 };
 struct DrawRow {
   uvec2 south_west;
-  uint post_spacing;
+  uvec2 post_spacing;
   uint frame;
-  float per_grid_unit;                         // 1 / side of the quadnode
   float per_rise_s;
+  vec2 per_grid_unit;                          // 1 / sides of the quadnode
   vec2 fade_s;                                 // for how long its lowest images are still blended in
+  float from_page[2];                          // array layers
   uvec4 tints;                                 // by error, level, frame and image
   vec4 from[2];                                // what those are blended in over; as image
-  vec4 image[6];                               // offset u, offset v, scale, array layer
+  vec4 image[6];                               // offset u, offset v, scale u, scale v
+  float image_page[6];                         // array layers
 };
 layout(std430, binding = 0) readonly buffer Frames { FrameRow frames[]; };
 layout(std430, binding = 1) readonly buffer Draws { DrawRow draws[]; };
@@ -63,7 +65,7 @@ vec3 NormalInFrame() {
   return normalize(n);
 }
 
-vec2 ImageCoordinate(vec4 image, vec2 local) { return (4.0 + 248.0 * (image.xy + image.z * local)) * (1.0 / 256.0); }
+vec2 ImageCoordinate(vec4 image, vec2 local) { return (4.0 + 248.0 * (image.xy + image.zw * local)) * (1.0 / 256.0); }
 
 void main() {
   uint own = place >> 15;
@@ -116,7 +118,7 @@ void main() {
   uv23 = vec4(ImageCoordinate(draws[draw_number].image[2], local), ImageCoordinate(draws[draw_number].image[3], local));
 #endif
 #if LAYER3 != 0 || LAYER4 != 0 || LAYER5 != 0
-  more_pages = vec3(draws[draw_number].image[3].w, draws[draw_number].image[4].w, draws[draw_number].image[5].w);
+  more_pages = vec3(draws[draw_number].image_page[3], draws[draw_number].image_page[4], draws[draw_number].image_page[5]);
 #endif
 #if LAYER4 != 0 || LAYER5 != 0
   uv45 = vec4(ImageCoordinate(draws[draw_number].image[4], local), ImageCoordinate(draws[draw_number].image[5], local));
@@ -130,11 +132,11 @@ void main() {
 #endif
 #if FADE
   from01 = vec4(ImageCoordinate(draws[draw_number].from[0], local), ImageCoordinate(draws[draw_number].from[1], local));
-  from_pages = vec4(draws[draw_number].from[0].w, draws[draw_number].from[1].w,
+  from_pages = vec4(draws[draw_number].from_page[0], draws[draw_number].from_page[1],
                     clamp((draws[draw_number].fade_s - moment.x) / kFade_s, 0.0, 1.0));
 #endif
 #if TINT
   tint = unpackUnorm4x8(draws[draw_number].tints[int(moment.y)]);
 #endif
-  pages = vec3(draws[draw_number].image[0].w, draws[draw_number].image[1].w, draws[draw_number].image[2].w);
+  pages = vec3(draws[draw_number].image_page[0], draws[draw_number].image_page[1], draws[draw_number].image_page[2]);
 }

@@ -61,14 +61,15 @@ class HeightReader {
 
   static Answer AnswerFrom(const ElevationPage& page, Quadcode node, double latitude_deg, double longitude_deg) {
     const GeoBox box = node.Box();
-    const double spacing_deg = node.SizeDegrees() / kCells;
+    const double spacing_deg = node.HeightDegrees() / kCells;
+    const double east_spacing_deg = node.WidthDegrees() / kCells;
     // Slope over one post spacing, inside the page.
     const double south = std::max(latitude_deg - 0.5 * spacing_deg, box.south_deg);
     const double north = std::min(latitude_deg + 0.5 * spacing_deg, box.north_deg);
     const double centre_deg = 0.5 * (box.west_deg + box.east_deg);
     const double longitude_in_box_deg = centre_deg + std::remainder(longitude_deg - centre_deg, 360.0);
-    const double west = std::max(longitude_in_box_deg - 0.5 * spacing_deg, box.west_deg);
-    const double east = std::min(longitude_in_box_deg + 0.5 * spacing_deg, box.east_deg);
+    const double west = std::max(longitude_in_box_deg - 0.5 * east_spacing_deg, box.west_deg);
+    const double east = std::min(longitude_in_box_deg + 0.5 * east_spacing_deg, box.east_deg);
     const auto height = [&](double lat, double lon) { return BilinearHeight(page, node, lat, lon); };
     const double metres_per_degree = kEquatorialRadius_m * kRadiansPerDegree;
     const double east_m = (east - west) * metres_per_degree * std::cos(latitude_deg * kRadiansPerDegree);

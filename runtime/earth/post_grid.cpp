@@ -26,8 +26,8 @@ glm::dvec3 EcefAt(const RowGeometry& row, const ColumnGeometry& column, double h
 }
 
 PostGrid::PostGrid(Quadcode node, int per_cell) {
-  BELVEDERE_CHECK(per_cell > 0 && static_cast<uint32_t>(per_cell) <= node.PostSpacing());
-  const uint32_t spacing = node.PostSpacing() / static_cast<uint32_t>(per_cell);
+  const auto parts = static_cast<uint32_t>(per_cell);
+  BELVEDERE_CHECK(per_cell > 0 && parts <= node.PostSpacingNorth());
   const int points = kCells * per_cell + 1;
   rows.reserve(static_cast<size_t>(points));
   columns.reserve(static_cast<size_t>(points));
@@ -36,17 +36,18 @@ PostGrid::PostGrid(Quadcode node, int per_cell) {
     rows.push_back(RowAt(point.latitude_deg()));
     const double longitude = point.longitude_deg() * kRadiansPerDegree;
     columns.push_back({std::sin(longitude), std::cos(longitude)});
-    point.x += spacing;  // wraps at 180 E, where 180 W has the same bits
-    point.y += spacing;
+    point.x += node.PostSpacingEast() / parts;  // wraps at 180 E, where 180 W has the same bits
+    point.y += node.PostSpacingNorth() / parts;
   }
 }
 
 double CellSagitta(Quadcode node) {
-  const double cell_radians = node.SizeDegrees() / kCells * kRadiansPerDegree;
+  constexpr double kMetresPerDegree = kEquatorialRadius_m * kRadiansPerDegree;
   const GeoBox box = node.Box();
   const double nearest_equator_deg = box.south_deg < 0 ? box.north_deg : box.south_deg;
-  const double north_m = cell_radians * kEquatorialRadius_m;
-  const double east_m = north_m * std::cos(nearest_equator_deg * kRadiansPerDegree);
+  const double north_m = node.HeightDegrees() / kCells * kMetresPerDegree;
+  const double east_m =
+      node.WidthDegrees() / kCells * kMetresPerDegree * std::cos(nearest_equator_deg * kRadiansPerDegree);
   return (north_m * north_m + east_m * east_m) / (8.0 * kPolarRadius_m);
 }
 

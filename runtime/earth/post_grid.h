@@ -30,7 +30,7 @@ glm::dvec3 EcefAt(const RowGeometry& row, const ColumnGeometry& column, double h
 
 struct PostGrid {
   // per_cell: intervals between points along each side of a cell, a power of two. REQUIRES: per_cell <=
-  // node.PostSpacing()
+  // node.PostSpacingNorth()
   explicit PostGrid(Quadcode node, int per_cell = 1);
 
   std::vector<RowGeometry> rows;  // kCells * per_cell + 1, from the south

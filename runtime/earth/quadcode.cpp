@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -37,6 +38,18 @@ constexpr uint64_t Gather(uint64_t v) {
   return (v | (v >> 16)) & 0xFFFFFFFFu;
 }
 
+// Of the quadnodes of a row: how many times wider than tall, as a power of two. Rows in the half of a root at a pole
+// are wide: that at the pole as its root is; those of a child beside the pole, and all under it, as that child makes
+// them.
+int DoublingsIn(int level, int64_t row) {
+  const int64_t rows = int64_t{kTreeRows} << level;
+  const auto from_pole = static_cast<uint64_t>(std::min(row, rows - 1 - row));
+  const auto levels_since_pole =
+      static_cast<int>(std::bit_width(from_pole));  // the quadnode so many levels up touches the pole
+  if (levels_since_pole >= level) return 0;
+  return levels_since_pole == 0 ? level : level - levels_since_pole + 1;
+}
+
 }  // namespace
 
 double GridPoint::longitude_deg() const {
@@ -51,29 +64,37 @@ int Quadcode::level() const {
   return static_cast<int>((std::bit_width(3 * code() + 1) - 1) / 2);
 }
 
+int64_t Quadcode::ColumnsAround(int level, int64_t row) {
+  return int64_t{kTreeColumns} << (level - DoublingsIn(level, row));
+}
+
 Quadcode Quadcode::FromColumnRow(int level, int64_t column, int64_t row) {
   BELVEDERE_CHECK(level >= 0 && level <= kMaxLevel);
-  const int64_t columns = int64_t{kTreeColumns} << level;
-  const int64_t rows = int64_t{kTreeRows} << level;
-  BELVEDERE_CHECK(row >= 0 && row < rows);
+  const int64_t columns = ColumnsAround(level, row);
+  BELVEDERE_CHECK(row >= 0 && row < int64_t{kTreeRows} << level);
   column = ((column % columns) + columns) % columns;
-  const int64_t in_tree = int64_t{1} << level;
-  const auto tree = static_cast<uint64_t>((row / in_tree) * kTreeColumns + column / in_tree);
-  const auto x = static_cast<uint64_t>(column % in_tree);
-  const auto y = static_cast<uint64_t>(row % in_tree);
+  const int64_t columns_in_tree = columns / kTreeColumns;
+  const int64_t rows_in_tree = int64_t{1} << level;
+  const auto tree = static_cast<uint64_t>((row / rows_in_tree) * kTreeColumns + column / columns_in_tree);
+  const auto x = static_cast<uint64_t>(column % columns_in_tree);
+  const auto y = static_cast<uint64_t>(row % rows_in_tree);
   return Quadcode((tree << kTreeShift) | (FirstCode(level) + (Spread(x) | (Spread(y) << 1))));
 }
 
 Quadcode Quadcode::Containing(double latitude_deg, double longitude_deg, int level) {
-  const double nodes_per_degree = std::ldexp(1.0, level) / kTreeDegrees;
-  const auto column = static_cast<int64_t>(std::floor((longitude_deg + 180.0) * nodes_per_degree));
-  const auto row = static_cast<int64_t>(std::floor((latitude_deg + 90.0) * nodes_per_degree));
-  return FromColumnRow(level, column, std::clamp<int64_t>(row, 0, (int64_t{kTreeRows} << level) - 1));
+  const double rows_per_degree = std::ldexp(1.0, level) / kTreeDegrees;
+  const int64_t row = std::clamp<int64_t>(static_cast<int64_t>(std::floor((latitude_deg + 90.0) * rows_per_degree)), 0,
+                                          (int64_t{kTreeRows} << level) - 1);
+  const double columns_per_degree = static_cast<double>(ColumnsAround(level, row)) / (kTreeColumns * kTreeDegrees);
+  const auto column = static_cast<int64_t>(std::floor((longitude_deg + 180.0) * columns_per_degree));
+  return FromColumnRow(level, column, row);
 }
 
 std::optional<Quadcode> Quadcode::FromWord(uint64_t word) {
   if ((word & kCodeMask) >= FirstCode(kMaxLevel + 1)) return std::nullopt;
-  return Quadcode(word);
+  const Quadcode node(word);
+  if (node.column_in_tree() >= ColumnsAround(node.level(), node.row()) / kTreeColumns) return std::nullopt;
+  return node;
 }
 
 Quadcode Quadcode::Ancestor(int level) const {
@@ -88,10 +109,12 @@ bool Quadcode::Contains(Quadcode other) const {
   return other.tree() == tree() && other.level() >= own && other.Ancestor(own) == *this;
 }
 
+int64_t Quadcode::column_in_tree() const {
+  return static_cast<int64_t>(Gather(code() - FirstCode(level())));
+}
+
 int64_t Quadcode::column() const {
-  const int own = level();
-  const auto x = static_cast<int64_t>(Gather(code() - FirstCode(own)));
-  return (int64_t{tree() % kTreeColumns} << own) + x;
+  return (int64_t{tree() % kTreeColumns} << (level() - Doublings())) + column_in_tree();
 }
 
 int64_t Quadcode::row() const {
@@ -100,20 +123,71 @@ int64_t Quadcode::row() const {
   return (int64_t{tree() / kTreeColumns} << own) + y;
 }
 
-GridPoint Quadcode::SouthWest() const {
-  const int shift = kGridBitsPerTree - level();
-  return {static_cast<uint32_t>(column() << shift), static_cast<uint32_t>(row() << shift)};
+std::span<const int> Quadcode::Children() const {
+  static constexpr std::array<int, 4> kAll{0, 1, 2, 3};
+  static constexpr std::array<int, 3> kOfNorthRoot{0, 1, 2}, kOfSouthRoot{0, 2, 3};
+  static constexpr std::array<int, 2> kAtPole{0, 2};
+  const bool north = touches_north_pole(), south = touches_south_pole();
+  if (!north && !south) return kAll;
+  if (!is_root()) return kAtPole;
+  return north ? kOfNorthRoot : kOfSouthRoot;
 }
 
-double Quadcode::SizeDegrees() const {
+int Quadcode::Doublings() const {
+  return DoublingsIn(level(), row());
+}
+
+bool Quadcode::touches_north_pole() const {
+  return row() == (int64_t{kTreeRows} << level()) - 1;
+}
+bool Quadcode::touches_south_pole() const {
+  return row() == 0;
+}
+
+GridPoint Quadcode::SouthWest() const {
+  const int shift = kGridBitsPerTree - level();
+  return {static_cast<uint32_t>(column() << (shift + Doublings())), static_cast<uint32_t>(row() << shift)};
+}
+
+double Quadcode::HeightDegrees() const {
   return std::ldexp(kTreeDegrees, -level());
+}
+double Quadcode::WidthDegrees() const {
+  return std::ldexp(kTreeDegrees, Doublings() - level());
 }
 
 GeoBox Quadcode::Box() const {
-  const double size = SizeDegrees();
-  const double west = static_cast<double>(column()) * size - 180.0;
-  const double south = static_cast<double>(row()) * size - 90.0;
-  return {west, south, west + size, south + size};
+  const double width = WidthDegrees(), height = HeightDegrees();
+  const double west = static_cast<double>(column()) * width - 180.0;
+  const double south = static_cast<double>(row()) * height - 90.0;
+  return {west, south, west + width, south + height};
+}
+
+std::vector<Quadcode> Quadcode::Around() const {
+  const int own = level();
+  const int64_t west = SouthWest().x, east = west + GridWidth();
+  const int64_t last_row = (int64_t{kTreeRows} << own) - 1;
+  std::vector<Quadcode> around;
+  for (int64_t row = std::max<int64_t>(this->row() - 1, 0); row <= std::min(this->row() + 1, last_row); ++row) {
+    const int64_t width = (int64_t{1} << 32) / ColumnsAround(own, row);
+    const int64_t first = west / width - (west % width == 0 ? 1 : 0);
+    for (int64_t column = first; column <= east / width; ++column) around.push_back(FromColumnRow(own, column, row));
+  }
+  return around;
+}
+
+std::optional<Quadcode> Quadcode::BesideParallel(bool north) const {
+  const GridPoint corner = SouthWest();
+  const uint32_t border = north ? corner.y + GridHeight() : corner.y;
+  if (border == 0 || border == kGridNorthPole) return std::nullopt;
+  for (int level = 0; level <= kMaxLevel; ++level) {
+    const int shift = kGridBitsPerTree - level;
+    if ((border & ((uint32_t{1} << shift) - 1)) != 0) continue;  // there the border lies within a quadnode
+    const int64_t row = int64_t{border >> shift} - (north ? 0 : 1);
+    const int64_t width = (int64_t{1} << 32) / ColumnsAround(level, row);
+    if (width <= int64_t{GridWidth()}) return FromColumnRow(level, corner.x / width, row);
+  }
+  return std::nullopt;  // none is so fine: beyond kMaxLevel
 }
 
 std::string Quadcode::ToString() const {
@@ -130,7 +204,8 @@ std::optional<Quadcode> Quadcode::Parse(std::string_view text) {
   if (parsed.ec != std::errc() || parsed.ptr != text.data() + colon || tree < 0 || tree >= kTrees) return std::nullopt;
   Quadcode node = Root(tree);
   for (const char digit : text.substr(colon + 1)) {
-    if (digit < '0' || digit > '3') return std::nullopt;
+    const std::span<const int> children = node.Children();
+    if (std::find(children.begin(), children.end(), digit - '0') == children.end()) return std::nullopt;
     node = node.Child(digit - '0');
   }
   return node;

@@ -3,9 +3,17 @@
 //   bits 63..59  tree, 0..31: 8 * row + column; column 0 spans longitudes [-180, -135), row 0 latitudes [-90, -45]
 //   bits 58..0   code within the tree: 0 is the root, the children of q are 4q+1 .. 4q+4 = SW, SE, NW, NE
 //
+// Poles. Towards a pole meridians draw together, so a quadnode that touches one is split along its middle parallel
+// alone (decision 0023): into the child that touches the pole again and the one beside it, both as wide as itself.
+// Their codes are those of the western of the two children that there would be elsewhere; the eastern ones do not
+// exist. The root alone has two children on its side away from the pole. What is under a child beside the pole is split
+// in four as everywhere. So 8 quadnodes meet at a pole, whatever their level; of the others from 67.5 degrees on none
+// is more than 1.6 times as wide on the ground as it is tall, nor less than 0.7 times.
+//
 // GridPoint is the exact fixed-point position in which posts, borders and texels of all levels meet: x counts units of
 // 45 degrees / 2^29 east of 180 W (it wraps at 2^32, as longitude does), y the same units north of 90 S, 0 .. 2^31.
-// A quadnode of level L spans 2^(29-L) units each way. Level 22, the finest, has posts 9 mm apart.
+// A quadnode of level L is 2^(29-L) units tall, and as wide or, from 67.5 degrees on, 2^Doublings() times as wide.
+// Level 22, the finest, has posts 9 mm apart.
 //
 // A quadnode carries kPosts x kPosts = 129 x 129 posts; the outermost ones lie on its border and are shared, bit for
 // bit, with its neighbours. Posts are numbered row by row from the south-west corner: index = row * kPosts + column.
@@ -16,8 +24,10 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace belvedere {
 
@@ -49,9 +59,11 @@ class Quadcode {
  public:
   constexpr Quadcode() = default;  // root of tree 0
   static constexpr Quadcode Root(int tree) { return Quadcode(static_cast<uint64_t>(tree) << kTreeShift); }
-  // column and row count nodes of that level over the whole Earth: column 0..8*2^L-1 from 180 W (taken modulo the
-  // count), row 0..4*2^L-1 from 90 S. REQUIRES: 0 <= level <= kMaxLevel and row in range.
+  // row counts those of the level over the whole Earth, 0..4*2^L-1 from 90 S, column those of that row from 180 W
+  // (taken modulo their count). REQUIRES: 0 <= level <= kMaxLevel and row in range.
   static Quadcode FromColumnRow(int level, int64_t column, int64_t row);
+  // How many there are in a row round the Earth: 8*2^L, and a power of two fewer near the poles.
+  static int64_t ColumnsAround(int level, int64_t row);
   // The node of that level that contains the position; on a border the one east or north of it.
   static Quadcode Containing(double latitude_deg, double longitude_deg, int level);
   // nullopt where no quadnode has that word (as when it was read from a damaged file).
@@ -63,7 +75,9 @@ class Quadcode {
   int level() const;
   bool is_root() const { return code() == 0; }
 
-  // which: 0 SW, 1 SE, 2 NW, 3 NE. REQUIRES: level() < kMaxLevel
+  // The children that there are: all of 0 SW, 1 SE, 2 NW and 3 NE, but of a quadnode at a pole. 0 is always there.
+  std::span<const int> Children() const;
+  // which: one of Children(). REQUIRES: level() < kMaxLevel
   Quadcode Child(int which) const {
     return Quadcode((word_ & ~kCodeMask) | (4 * code() + 1 + static_cast<uint64_t>(which)));
   }
@@ -77,11 +91,24 @@ class Quadcode {
   int64_t column() const;
   int64_t row() const;
   GridPoint SouthWest() const;
-  // Side of the quadnode, and distance between its posts, in grid units.
-  uint32_t GridSize() const { return uint32_t{1} << (kGridBitsPerTree - level()); }
-  uint32_t PostSpacing() const { return GridSize() >> kCellsLog2; }
+  // It is 2^Doublings() times as wide, in degrees, as it is tall.
+  int Doublings() const;
+  bool touches_north_pole() const;
+  bool touches_south_pole() const;
+  // Sides of the quadnode, and distances between its posts, along a parallel and along a meridian, in grid units.
+  uint32_t GridWidth() const { return GridHeight() << Doublings(); }
+  uint32_t GridHeight() const { return uint32_t{1} << (kGridBitsPerTree - level()); }
+  uint32_t PostSpacingEast() const { return GridWidth() >> kCellsLog2; }
+  uint32_t PostSpacingNorth() const { return GridHeight() >> kCellsLog2; }
   GeoBox Box() const;
-  double SizeDegrees() const;
+  double WidthDegrees() const;
+  double HeightDegrees() const;
+
+  // Those of its level in the rows from the one south of it to the one north of it that touch it, itself among them.
+  std::vector<Quadcode> Around() const;
+  // The coarsest quadnode beyond its border to the north, or to the south, whose posts there are no further apart than
+  // its own: of its own level but where rows change their width. nullopt at the pole.
+  std::optional<Quadcode> BesideParallel(bool north) const;
 
   // "12:0312" = tree 12, then the child taken at each level; the root of a tree is "12:".
   std::string ToString() const;
@@ -93,6 +120,7 @@ class Quadcode {
   static constexpr int kTreeShift = 59;
   static constexpr uint64_t kCodeMask = (uint64_t{1} << kTreeShift) - 1;
   explicit constexpr Quadcode(uint64_t word) : word_(word) {}
+  int64_t column_in_tree() const;
 
   uint64_t word_ = 0;
 };

@@ -152,11 +152,11 @@ Quadcode Dataset::FinestContaining(int layer, double latitude_deg, double longit
 
 double BilinearHeight(const ElevationPage& page, Quadcode node, double latitude_deg, double longitude_deg) {
   const GeoBox box = node.Box();
-  const double cells_per_degree = kCells / node.SizeDegrees();
   double east_deg = std::fmod(longitude_deg - box.west_deg, 360.0);
   if (east_deg < 0) east_deg += 360.0;
-  const double x = std::clamp(east_deg * cells_per_degree, 0.0, static_cast<double>(kCells));
-  const double y = std::clamp((latitude_deg - box.south_deg) * cells_per_degree, 0.0, static_cast<double>(kCells));
+  const double x = std::clamp(east_deg * kCells / node.WidthDegrees(), 0.0, static_cast<double>(kCells));
+  const double y =
+      std::clamp((latitude_deg - box.south_deg) * kCells / node.HeightDegrees(), 0.0, static_cast<double>(kCells));
   const int column = std::min(static_cast<int>(x), kCells - 1);
   const int row = std::min(static_cast<int>(y), kCells - 1);
   const double fx = x - column;

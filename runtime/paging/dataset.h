@@ -1,7 +1,7 @@
 // Dataset: the pages on disk, an LMDB store in a folder and changes laid over it, read by many threads at once.
 // docs/dataset-format.md has the bytes.
 //
-// A layer is a pyramid of pages of one kind. The children of a quadnode exist all four or not at all; level 0 of every
+// A layer is a pyramid of pages of one kind. The children of a quadnode exist all or not at all; level 0 of every
 // layer has all 32 pages. Which pages exist is loaded at Open, so Exists touches no disk.
 //
 // A dataset is opened for reading alone (no lock file, no write permission needed) and is never changed in place: a
@@ -31,8 +31,8 @@ namespace belvedere {
 struct BuildingPage;
 struct VectorPage;
 
-inline constexpr int kDatasetVersion = 3;
-inline constexpr int kOldestDatasetVersion = 2;  // that is still read
+inline constexpr int kDatasetVersion = 4;
+inline constexpr int kOldestDatasetVersion = 4;  // that is still read
 inline constexpr int kMaxDatasetLayers = 256;
 
 enum class LayerKind : uint8_t { kElevation = 1, kImagery = 2, kProperty = 4, kVector = 5, kModel = 6 };

@@ -12,7 +12,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <numbers>
 #include <type_traits>
 
 namespace belvedere {
@@ -353,6 +352,14 @@ double RangeOf(std::span<const float> heights_m, const Split& split) {
   return static_cast<double>(high - low);
 }
 
+// From corner to corner of a cell, as seen from the Earth's middle, at most.
+double LargestCellRadians(Quadcode node) {
+  const GeoBox box = node.Box();
+  const double nearest_equator_deg = std::min(std::abs(box.south_deg), std::abs(box.north_deg));
+  const double east_deg = node.WidthDegrees() * std::cos(nearest_equator_deg * kRadiansPerDegree);
+  return std::hypot(node.HeightDegrees(), east_deg) / kCells * kRadiansPerDegree;
+}
+
 // Of the posts that split something; the corners get the greatest.
 template <typename Of>
 std::vector<float> DeltasBy(const Of& of) {
@@ -375,12 +382,12 @@ std::vector<float> DeltaValuesOf(Quadcode node, std::span<const float> heights_m
   const Paraboloid paraboloid(node);
   const Roundness& roundness = RoundnessAround(node);
   const Relief relief(heights_m, finest, paraboloid);
-  const double post_radians = node.SizeDegrees() / kCells * kRadiansPerDegree;
+  const double cell_radians = LargestCellRadians(node);
   return DeltasBy([&](Post post, int level) {
     const Split split = SplitAt(post);
     const Roundness::Rest& rest = roundness.at(post, level);
     // No two verticals of a triangle are further apart than those at the ends of a diagonal hypotenuse of the level.
-    const double turn = 2 * HalfSpan(level) * std::numbers::sqrt2 * post_radians;
+    const double turn = 2 * HalfSpan(level) * cell_radians;
     const double bulge_m = turn * turn * kEquatorialRadius_m / 8.0;
     const double up_m =
         static_cast<double>(ErrorOfSplit(relief, post, split, level)) + kSampled * rest.up_m + kAtHeight * bulge_m;

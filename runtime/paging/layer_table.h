@@ -2,7 +2,7 @@
 //
 // Some come from the dataset, some are made by read modules from others. The table is filled at start and is read-only
 // afterwards. It knows which quadnodes exist, so that nobody asks for what is not there: a layer's quadnodes form whole
-// quadtrees in which the four children of a quadnode exist together or not at all.
+// quadtrees in which the children of a quadnode exist together or not at all.
 //
 // A layer that changes with the simulation time has a data type for each of its steps (layer_steps.h). The one that is
 // added first stands for them all: it has the layer's name and knows the steps, and views name no other.

@@ -44,17 +44,9 @@ ChangedPages ChangedPages::Between(const Dataset& before, const Dataset& after) 
 bool ChangedPages::MayReach(Quadcode node) const {
   if (all_) return true;
   if (words_.empty()) return false;
-  const int64_t rows = int64_t{kTreeRows} << node.level();
-  for (int64_t row = node.row() - 1; row <= node.row() + 1; ++row) {
-    if (row < 0 || row >= rows) continue;
-    for (int64_t column = node.column() - 1; column <= node.column() + 1; ++column) {
-      Quadcode near = Quadcode::FromColumnRow(node.level(), column, row);
-      while (!words_.contains(near.word())) {
-        if (near.is_root()) break;
-        near = near.Parent();
-      }
-      if (words_.contains(near.word())) return true;
-    }
+  for (Quadcode near : node.Around()) {
+    while (!words_.contains(near.word()) && !near.is_root()) near = near.Parent();
+    if (words_.contains(near.word())) return true;
   }
   return false;
 }

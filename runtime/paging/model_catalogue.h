@@ -35,10 +35,13 @@ class ModelCatalogue {
   }
 
   // The key word of model `number` (see paging.h), and back.
-  static Quadcode ModelNode(int number) { return Quadcode::FromColumnRow(kMaxLevel, number, 0); }
+  static Quadcode ModelNode(int number) { return Quadcode::FromColumnRow(kMaxLevel, number, kModelRow); }
+  static bool IsModelNode(Quadcode node) { return node.level() == kMaxLevel && node.row() == kModelRow; }
   static int ModelNumber(Quadcode node) { return static_cast<int>(node.column()); }
 
  private:
+  static constexpr int64_t kModelRow = int64_t{kTreeRows / 2} << kMaxLevel;  // at the equator, where a row is longest
+
   std::string folder_;
   std::vector<ModelEntry> entries_;
 };

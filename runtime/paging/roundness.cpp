@@ -28,12 +28,23 @@ Post PointOf(Post post) {
 Paraboloid::Paraboloid(Quadcode node) {
   const GeoBox box = node.Box();
   const RowGeometry row = RowAt(0.5 * (box.south_deg + box.north_deg));
-  const double step = node.SizeDegrees() / (kCells * kPerCell) * kRadiansPerDegree;
-  per_column_m_ = 0.5 * row.prime_vertical_m * row.cos_latitude * row.cos_latitude * step * step;
-  per_row_m_ = 0.5 * row.meridian_m * step * step;
+  const double east = node.WidthDegrees() / (kCells * kPerCell) * kRadiansPerDegree;
+  const double north = node.HeightDegrees() / (kCells * kPerCell) * kRadiansPerDegree;
+  per_column_m_ = 0.5 * row.prime_vertical_m * row.cos_latitude * row.cos_latitude * east * east;
+  per_row_m_ = 0.5 * row.meridian_m * north * north;
+  constexpr int kLast = FinestSurface::kSide - 1;
+  if (node.touches_north_pole() || node.touches_south_pole()) {
+    first_wide_row_ = node.is_root() && node.touches_north_pole() ? kLast / 2 + 1 : 0;
+    last_wide_row_ = node.is_root() && node.touches_south_pole() ? kLast / 2 - 1 : kLast;
+  }
 }
 
 double Paraboloid::At(int column, int row) const {
+  if (!IsHalfWay(column, row)) return OnEllipsoid(column, row);
+  return 0.5 * (OnEllipsoid(column - 1, row) + OnEllipsoid(column + 1, row));
+}
+
+double Paraboloid::OnEllipsoid(int column, int row) const {
   constexpr int kMiddle = kCells * kPerCell / 2;
   const double x = column - kMiddle, y = row - kMiddle;
   return -per_column_m_ * x * x - per_row_m_ * y * y;
@@ -53,8 +64,13 @@ Roundness::Roundness(Quadcode node, const Paraboloid& paraboloid) : grid_(node, 
 }
 
 Roundness::Place Roundness::At(Post point) const {
-  return {grid_.At(static_cast<size_t>(point.column), static_cast<size_t>(point.row), 0),
-          paraboloid_.At(point.column, point.row)};
+  const auto ecef = [&](int column) {
+    return grid_.At(static_cast<size_t>(column), static_cast<size_t>(point.row), 0);
+  };
+  const glm::dvec3 here = paraboloid_.IsHalfWay(point.column, point.row)
+                              ? 0.5 * (ecef(point.column - 1) + ecef(point.column + 1))
+                              : ecef(point.column);
+  return {here, paraboloid_.At(point.column, point.row)};
 }
 
 void Roundness::Widen(Post apex, const Split& split, Rest& rest) const {

@@ -12,14 +12,22 @@
 
 namespace belvedere {
 
-// The ellipsoid under a quadnode as a paraboloid over columns and rows, 0 in the middle.
+// The ellipsoid under a quadnode as a paraboloid over columns and rows, 0 in the middle. Where a child is as wide as
+// the quadnode (quadcode.h) its posts are those of even columns: those of odd ones lie half-way between their
+// neighbours, on the child's edges, here and in Roundness.
 class Paraboloid {
  public:
   explicit Paraboloid(Quadcode node);
   double At(int column, int row) const;
+  bool IsHalfWay(int column, int row) const {
+    return column % 2 == 1 && row >= first_wide_row_ && row <= last_wide_row_;
+  }
 
  private:
+  double OnEllipsoid(int column, int row) const;
+
   double per_column_m_ = 0, per_row_m_ = 0;
+  int first_wide_row_ = 0, last_wide_row_ = -1;
 };
 
 // Between the ellipsoid's points and a triangle's of the same columns and rows, what the paraboloid does not say: along

@@ -19,10 +19,10 @@ glm::dvec3 VertexInFrame(const TerrainPage& page, int column, int row) {
 
 GroundPoint GroundOnPage(const TerrainPage& page, double latitude_deg, double longitude_deg) {
   const GeoBox box = page.node.Box();
-  const double size = page.node.SizeDegrees();
-  const double east_of_box = std::remainder(longitude_deg - (box.west_deg + 0.5 * size), 360.0) + 0.5 * size;
-  const double x = std::clamp(east_of_box / size, 0.0, 1.0) * kCells;
-  const double y = std::clamp((latitude_deg - box.south_deg) / size, 0.0, 1.0) * kCells;
+  const double width = page.node.WidthDegrees();
+  const double east_of_box = std::remainder(longitude_deg - (box.west_deg + 0.5 * width), 360.0) + 0.5 * width;
+  const double x = std::clamp(east_of_box / width, 0.0, 1.0) * kCells;
+  const double y = std::clamp((latitude_deg - box.south_deg) / page.node.HeightDegrees(), 0.0, 1.0) * kCells;
   const int column = std::min(static_cast<int>(x), kCells - 1);
   const int row = std::min(static_cast<int>(y), kCells - 1);
   const double u = x - column;

@@ -61,7 +61,7 @@ struct ListRecord {
 struct ImageUse {
   int32_t slot = -1;  // -1: no image, draw as neutral
   float offset_u = 0, offset_v = 0;
-  float scale = 1;
+  float scale_u = 1, scale_v = 1;
   Quadcode source;    // of the page
   DataType type = 0;  // of the page
 };

@@ -84,7 +84,7 @@ void GreedySearch::Walk(Quadcode node, std::vector<Chosen>& chosen) {
     chosen.push_back({node, Choose(node)});
     return;
   }
-  for (int which = 0; which < 4; ++which) Walk(node.Child(which), chosen);
+  for (const int which : node.Children()) Walk(node.Child(which), chosen);
 }
 
 DrawnPosts GreedySearch::Choose(Quadcode node) {
@@ -125,7 +125,7 @@ const std::vector<const SeenPosts*>& GreedySearch::FullUnder(Quadcode node) {
   if (IsSeen(node) && !terrain_.HasFiner(node)) {
     full.push_back(&PostsOf(node));
   } else if (IsSeen(node)) {
-    for (int which = 0; which < 4; ++which) {
+    for (const int which : node.Children()) {
       const std::vector<const SeenPosts*>& under = FullUnder(node.Child(which));
       full.insert(full.end(), under.begin(), under.end());
     }
@@ -145,13 +145,13 @@ bool GreedySearch::KeepsBound(Quadcode node) {
   if (!terrain_.HasFiner(node)) return true;
   const SeenPosts& posts = PostsOf(node);
   for (const SeenPosts* full : FullUnder(node)) {
-    const int levels = full->node.level() - node.level();
-    const int64_t within = (int64_t{1} << levels) - 1;
-    const auto west = static_cast<int>((full->node.column() & within) * kCells >> levels);
-    const auto south = static_cast<int>((full->node.row() & within) * kCells >> levels);
-    const int cells = std::max(kCells >> levels, 1);
-    for (int cell = 0; cell < cells * cells; ++cell) {
-      for (const CornerPosts& triangle : FinestTriangles({west + cell % cells, south + cell / cells})) {
+    const GridPoint from = node.SouthWest(), to = full->node.SouthWest();
+    const auto west = static_cast<int>((to.x - from.x) / node.PostSpacingEast());
+    const auto south = static_cast<int>((to.y - from.y) / node.PostSpacingNorth());
+    const int columns = std::max(static_cast<int>(full->node.GridWidth() / node.PostSpacingEast()), 1);
+    const int rows = std::max(static_cast<int>(full->node.GridHeight() / node.PostSpacingNorth()), 1);
+    for (int cell = 0; cell < columns * rows; ++cell) {
+      for (const CornerPosts& triangle : FinestTriangles({west + cell % columns, south + cell / columns})) {
         if (errors_.LargestOver(*full, posts, triangle) > bound_px_) return false;
       }
     }

@@ -3,7 +3,7 @@
 // The hierarchy is that of the terrain manager: quadnodes of posts, in each the bisection of right triangles
 // (bisection.h), each post with its two parents. The search starts with the coarsest, and whatever is over the bound is
 // split, with all that the split forces, until nothing is: a triangle, at the post in the middle of its hypotenuse; a
-// quadnode whose very finest triangles are over the bound, into its four children. For a given bound the order makes no
+// quadnode whose very finest triangles are over the bound, into its children. For a given bound the order makes no
 // difference: a triangle over it must be split sooner or later, and what a split forces is forced whenever it comes.
 //
 // The error of a triangle is the largest over all full-resolution posts that it covers (picture_errors.h). Full

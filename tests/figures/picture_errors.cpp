@@ -15,11 +15,11 @@ class Footprint {
  public:
   Footprint(const SeenPosts& full, const SeenPosts& posts, const CornerPosts& triangle)
       : corners_{triangle.apex, triangle.b, triangle.c} {
-    const int levels = full.node.level() - posts.node.level();
-    const auto within = (int64_t{1} << levels) - 1;
+    const int64_t full_east = full.node.PostSpacingEast(), full_north = full.node.PostSpacingNorth();
+    const GridPoint from = posts.node.SouthWest(), to = full.node.SouthWest();
     for (Place& corner : corners_) {
-      corner.column = (corner.column << levels) - (full.node.column() & within) * kCells;
-      corner.row = (corner.row << levels) - (full.node.row() & within) * kCells;
+      corner.column = corner.column * (posts.node.PostSpacingEast() / full_east) - (to.x - from.x) / full_east;
+      corner.row = corner.row * (posts.node.PostSpacingNorth() / full_north) - (to.y - from.y) / full_north;
     }
     const auto [south, north] = std::minmax({corners_[0].row, corners_[1].row, corners_[2].row});
     const auto [west, east] = std::minmax({corners_[0].column, corners_[1].column, corners_[2].column});

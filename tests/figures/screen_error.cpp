@@ -44,22 +44,41 @@ class FullSurface {
   FullSurface(const Dataset& dataset, double exaggeration)
       : dataset_(dataset), layer_(dataset.FindLayer(LayerKind::kElevation).value_or(-1)), exaggeration_(exaggeration) {}
 
-  // The point of the triangles at the latitude and longitude.
+  // The point of the triangles over or under the place. Within a triangle columns and rows are not quite longitudes and
+  // latitudes, least of all by a pole.
   glm::dvec3 At(double latitude_deg, double longitude_deg) {
+    constexpr int kTries = 4;
+    double latitude = latitude_deg, longitude = longitude_deg;
+    glm::dvec3 point = AtShares(latitude, longitude);
+    for (int i = 0; i < kTries && std::abs(latitude_deg) < kNearPole_deg; ++i) {
+      const Geodetic there = ToGeodetic(point);
+      latitude = std::clamp(latitude + latitude_deg - there.latitude_deg, -90.0, 90.0);
+      longitude += std::remainder(longitude_deg - there.longitude_deg, 360.0);
+      point = AtShares(latitude, longitude);
+    }
+    return point;
+  }
+  double HeightAt(const Geodetic& place) { return ToGeodetic(At(place.latitude_deg, place.longitude_deg)).height_m; }
+
+ private:
+  static constexpr double kNearPole_deg = 89.999;
+
+  // The point of the triangles with the shares that the latitude and longitude have of a cell.
+  glm::dvec3 AtShares(double latitude_deg, double longitude_deg) {
     const Quadcode node = dataset_.FinestContaining(layer_, latitude_deg, longitude_deg);
     const ElevationPage& page = PageOf(node);
     const GeoBox box = node.Box();
-    const double step_deg = node.SizeDegrees() / kCells;
+    const Steps step = StepsOf(node);
     const double east_deg =
-        std::remainder(longitude_deg - box.west_deg - 0.5 * node.SizeDegrees(), 360.0) + 0.5 * node.SizeDegrees();
-    const double x = std::clamp(east_deg / step_deg, 0.0, double{kCells});
-    const double y = std::clamp((latitude_deg - box.south_deg) / step_deg, 0.0, double{kCells});
+        std::remainder(longitude_deg - box.west_deg - 0.5 * node.WidthDegrees(), 360.0) + 0.5 * node.WidthDegrees();
+    const double x = std::clamp(east_deg / step.east_deg, 0.0, double{kCells});
+    const double y = std::clamp((latitude_deg - box.south_deg) / step.north_deg, 0.0, double{kCells});
     const int i = std::min(static_cast<int>(x), kCells - 1);
     const int j = std::min(static_cast<int>(y), kCells - 1);
     const double u = x - i, v = y - j;
     const auto post = [&](int east, int north) {
       if (const auto laid = LaidAt(node, i + east, j + north)) return *laid;
-      return ToEcef({box.south_deg + (j + north) * step_deg, box.west_deg + (i + east) * step_deg,
+      return ToEcef({box.south_deg + (j + north) * step.north_deg, box.west_deg + (i + east) * step.east_deg,
                      page.at(i + east, j + north) * 1e-3 * exaggeration_});
     };
     // The diagonal of a cell: see preproc/surface_error.h.
@@ -70,9 +89,12 @@ class FullSurface {
     return u + v <= 1 ? (1 - u - v) * post(0, 0) + u * post(1, 0) + v * post(0, 1)
                       : (u + v - 1) * post(1, 1) + (1 - v) * post(1, 0) + (1 - u) * post(0, 1);
   }
-  double HeightAt(const Geodetic& place) { return ToGeodetic(At(place.latitude_deg, place.longitude_deg)).height_m; }
 
- private:
+  struct Steps {
+    double east_deg = 0, north_deg = 0;
+  };
+  static Steps StepsOf(Quadcode node) { return {node.WidthDegrees() / kCells, node.HeightDegrees() / kCells}; }
+
   // Posts on a border beyond which pages are coarser lie on the straight edge of the coarser page's cells.
   std::optional<glm::dvec3> LaidAt(Quadcode node, int column, int row) {
     struct Way {
@@ -82,24 +104,26 @@ class FullSurface {
     for (const Way way :
          {Way{-1, 0, column == 0}, {1, 0, column == kCells}, {0, -1, row == 0}, {0, 1, row == kCells}}) {
       if (!way.here) continue;
-      const int64_t beside_row = node.row() + way.north;
-      if (beside_row < 0 || beside_row >= int64_t{kTreeRows} << node.level()) continue;
-      Quadcode coarser = Quadcode::FromColumnRow(node.level(), node.column() + way.east, beside_row);
-      if (dataset_.Exists(layer_, coarser)) continue;
+      const std::optional<Quadcode> beside =
+          way.north != 0 ? node.BesideParallel(way.north > 0)
+                         : Quadcode::FromColumnRow(node.level(), node.column() + way.east, node.row());
+      if (!beside || dataset_.Exists(layer_, *beside)) continue;
+      Quadcode coarser = *beside;
       while (!dataset_.Exists(layer_, coarser)) coarser = coarser.Parent();
       const ElevationPage& page = PageOf(coarser);
       const GeoBox box = coarser.Box();
-      const double step_deg = coarser.SizeDegrees() / kCells;
+      const Steps step = StepsOf(coarser);
       const auto edge = [&](int along) {
         const int at_column = way.east == 0 ? along : way.east < 0 ? kCells : 0;
         const int at_row = way.north == 0 ? along : way.north < 0 ? kCells : 0;
-        return ToEcef({box.south_deg + at_row * step_deg, box.west_deg + at_column * step_deg,
+        return ToEcef({box.south_deg + at_row * step.north_deg, box.west_deg + at_column * step.east_deg,
                        page.at(at_column, at_row) * 1e-3 * exaggeration_});
       };
       const GridPoint from = node.SouthWest(), to = coarser.SouthWest();
-      const uint32_t position = way.east != 0 ? from.y + static_cast<uint32_t>(row) * node.PostSpacing() - to.y
-                                              : from.x + static_cast<uint32_t>(column) * node.PostSpacing() - to.x;
-      const double along = static_cast<double>(position) / coarser.PostSpacing();
+      const uint32_t position = way.east != 0 ? from.y + static_cast<uint32_t>(row) * node.PostSpacingNorth() - to.y
+                                              : from.x + static_cast<uint32_t>(column) * node.PostSpacingEast() - to.x;
+      const double along =
+          static_cast<double>(position) / (way.east != 0 ? coarser.PostSpacingNorth() : coarser.PostSpacingEast());
       const int first = std::min(static_cast<int>(along), kCells - 1);
       return glm::mix(edge(first), edge(first + 1), along - first);
     }

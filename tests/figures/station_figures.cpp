@@ -5,7 +5,7 @@
 //   station_figures places DATASET [SECONDS]
 //       pixels a second with four views of four places over those with one view of one
 //   station_figures poles DATASET
-//       quadnodes and triangles of views at the poles over those at the equator, from the same heights
+//       quadnodes and triangles of views at the poles over those at the equator, from the same heights over ground
 //   station_figures feed DATASET [SECONDS]
 //       20,000 Entity State PDUs a second from 5,000 entities while three views draw
 //   station_figures entities DATASET [COUNT] [SECONDS] [PICTURE.png]
@@ -23,6 +23,7 @@
 
 #include "runtime/app/percentiles.h"
 #include "runtime/earth/ellipsoid.h"
+#include "runtime/paging/dataset.h"
 #include "tests/figures/loaded_station.h"
 #include "tests/figures/object_figures.h"
 
@@ -32,6 +33,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -100,7 +102,19 @@ int Places(const std::string& dataset, double seconds) {
   return four / one >= 0.9 ? 0 : 1;
 }
 
+// Of the ground over the ellipsoid; exits when it cannot be read.
+double GroundAt(const Dataset& dataset, double latitude_deg, double longitude_deg) {
+  const std::optional<int> layer = dataset.FindLayer(LayerKind::kElevation);
+  if (!layer) return 0;
+  const Quadcode node = dataset.FinestContaining(*layer, latitude_deg, longitude_deg);
+  const auto page = dataset.ReadElevation(*layer, node);
+  if (!page.ok()) Give(page.message());
+  return BilinearHeight(**page, node, latitude_deg, longitude_deg);
+}
+
 int Poles(const std::string& dataset) {
+  const auto pages = Dataset::Open(dataset);
+  if (!pages.ok()) Give(pages.message());
   auto station = StartStation(dataset, 1024 * kMiB, false);
   ViewParameters view = ViewFrom(*station, 1, {0, 0, 1e7}, 0, -90);
   view.error_px = 1;
@@ -113,7 +127,8 @@ int Poles(const std::string& dataset) {
       for (const double latitude_deg : latitudes_deg) {
         for (const double longitude_deg : {-150.0, -100.0, -25.0, 5.0, 60.0, 85.0, 160.0}) {
           const uint64_t number = view.number;
-          view = ViewFrom(*station, 1, {latitude_deg, longitude_deg, height_m}, longitude_deg, -35);
+          const double eye_m = GroundAt(**pages, latitude_deg, longitude_deg) + height_m;
+          view = ViewFrom(*station, 1, {latitude_deg, longitude_deg, eye_m}, longitude_deg, -35);
           view.error_px = 1;
           view.number = number + 1;
           channel.parameters.Publish(view);

@@ -39,6 +39,7 @@ class ImageFadeTest : public testing::Test {
                        scale * static_cast<float>(node.column() & across),
                        scale * static_cast<float>(node.row() & across),
                        scale,
+                       scale,
                        source,
                        kImagery};
     fade_.Apply(std::span(&shown, 1), layers_, now_s, jump, pages_);
@@ -58,7 +59,7 @@ TEST_F(ImageFadeTest, AFinerImageIsBlendedInOverThePartOfTheCoarserThatWasThere)
   const CutNode node = Shown(kChild, kChild, 1);
   EXPECT_EQ(node.images[0].slot, 8);
   EXPECT_EQ(node.from[0].slot, 7);
-  EXPECT_EQ(node.from[0].scale, 0.5F);
+  EXPECT_EQ(node.from[0].scale_u, 0.5F);
   EXPECT_EQ(node.from[0].offset_u, 0.5F);  // child 3 is the one in the north-east
   EXPECT_EQ(node.from[0].offset_v, 0.5F);
   EXPECT_DOUBLE_EQ(node.fade_until_s[0], 1 + ImageFade::kFade_s);
@@ -104,7 +105,7 @@ TEST_F(ImageFadeTest, AnotherStepOfTheLayerIsBlendedInOverTheOneBefore) {
     pages_.steps[{type, kChild}] = slot;
     CutNode node;
     node.node = kChild;
-    node.images[0] = {slot, 0, 0, 1, kChild, type};
+    node.images[0] = {slot, 0, 0, 1, 1, kChild, type};
     fade_.Apply(std::span(&node, 1), layers_, now_s, false, pages_);
     return node;
   };

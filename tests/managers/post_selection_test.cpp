@@ -96,7 +96,7 @@ TEST(PostSelection, ShiftsAlongTheVerticalKeepTheBound) {
         FlatPage(Quadcode::Containing(75 * unit(random), 170 * unit(random), 1 + eye % 10), RandomDeltas(random));
     const double size_m = page->radius_m;
     const GeoBox box = page->node.Box();
-    const double size_deg = page->node.SizeDegrees();
+    const double size_deg = page->node.HeightDegrees();
     const auto near = [&](double middle_deg, double share) { return middle_deg + share * size_deg * unit(random); };
     const Geodetic place{near(0.5 * (box.south_deg + box.north_deg), 0.7),
                          near(0.5 * (box.west_deg + box.east_deg), 0.7), size_m * std::exp2(2 * unit(random))};

@@ -53,11 +53,11 @@ inline std::unique_ptr<TerrainPage> FlatPage(Quadcode node, std::vector<float> d
   page->vertices.resize(kVerticesPerPage);
   const Frame frame = FrameOf(node);
   const GeoBox box = node.Box();
-  const double step = node.SizeDegrees() / kCells;
+  const double east = node.WidthDegrees() / kCells, north = node.HeightDegrees() / kCells;
   page->center_ecef = ToEcef({0.5 * (box.south_deg + box.north_deg), 0.5 * (box.west_deg + box.east_deg), 0.0});
   for (int row = 0; row < kPosts; ++row) {
     for (int column = 0; column < kPosts; ++column) {
-      const glm::dvec3 ecef = ToEcef({box.south_deg + row * step, box.west_deg + column * step, 0.0});
+      const glm::dvec3 ecef = ToEcef({box.south_deg + row * north, box.west_deg + column * east, 0.0});
       const glm::vec3 local(frame.ToFrame(ecef));
       page->vertices[static_cast<size_t>(row * kPosts + column)] = {local.x, local.y, local.z, 0};
       page->radius_m = std::max(page->radius_m, glm::distance(ecef, page->center_ecef));
@@ -111,7 +111,7 @@ inline std::vector<Quadcode> RandomCutNodes(std::mt19937& random, int splits, in
     const Quadcode node = nodes[chosen];
     if (node.level() >= deepest) continue;
     nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(chosen));
-    for (int which = 0; which < 4; ++which) nodes.push_back(node.Child(which));
+    for (const int which : node.Children()) nodes.push_back(node.Child(which));
   }
   return nodes;
 }

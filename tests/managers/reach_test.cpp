@@ -29,11 +29,21 @@ TEST(Reach, QuadnodesTouchOver180E) {
 }
 
 TEST(Reach, AllAtAPoleTouch) {
-  const Quadcode there = Quadcode::FromColumnRow(4, 3, 63), opposite = Quadcode::FromColumnRow(6, 300, 255);
+  const Quadcode there = Quadcode::FromColumnRow(4, 1, 63), opposite = Quadcode::FromColumnRow(6, 5, 255);
   EXPECT_TRUE(Touch(there, opposite));
-  EXPECT_FALSE(Touch(there, Quadcode::FromColumnRow(6, 300, 254)));
-  EXPECT_FALSE(Touch(there, Quadcode::FromColumnRow(6, 300, 0)));
-  EXPECT_TRUE(Touch(Quadcode::FromColumnRow(4, 3, 0), Quadcode::FromColumnRow(6, 300, 0)));
+  EXPECT_FALSE(Touch(there, Quadcode::FromColumnRow(6, 5, 254)));
+  EXPECT_FALSE(Touch(there, Quadcode::FromColumnRow(6, 5, 0)));
+  EXPECT_TRUE(Touch(Quadcode::FromColumnRow(4, 1, 0), Quadcode::FromColumnRow(6, 5, 0)));
+}
+
+TEST(Reach, WhereRowsChangeTheirWidthBothSidesTouch) {
+  const Quadcode wide = Quadcode::Containing(67.51, 20, 5);
+  const GeoBox box = wide.Box();
+  for (const double longitude_deg :
+       {box.west_deg, 0.5 * (box.west_deg + box.east_deg), box.east_deg - 0.01, box.west_deg - 0.01})
+    EXPECT_TRUE(Touch(wide, Quadcode::Containing(67.49, longitude_deg, 5))) << longitude_deg;
+  const Quadcode narrow = Quadcode::Containing(67.49, 20, 5);
+  EXPECT_FALSE(Touch(wide, Quadcode::Containing(67.49, box.east_deg + 1.5 * narrow.WidthDegrees(), 5)));
 }
 
 TEST(Reach, AChangeReachesNeighboursAndThoseAskTheirs) {

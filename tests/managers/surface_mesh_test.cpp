@@ -47,8 +47,8 @@ Surface MakeSurface(std::mt19937& random, const std::vector<Quadcode>& nodes, co
 GridPoint PositionOf(const Surface& surface, uint32_t vertex) {
   const ListVertex& v = (*surface.list.vertices)[vertex];
   const Quadcode node = surface.list.terrain_draws[v.draw()].node;
-  GridPoint point{node.SouthWest().x + v.post() % kPosts * node.PostSpacing(),
-                  node.SouthWest().y + v.post() / kPosts * node.PostSpacing()};
+  GridPoint point{node.SouthWest().x + v.post() % kPosts * node.PostSpacingEast(),
+                  node.SouthWest().y + v.post() / kPosts * node.PostSpacingNorth()};
   if (point.y == 0 || point.y == kGridNorthPole) point.x = 0;
   return point;
 }
@@ -102,13 +102,13 @@ TEST(SurfaceMesh, RandomCutsAreClosedFromAnywhere) {
   }
 }
 
-// Splits a quadnode, or puts one in the place of its four children.
+// Splits a quadnode, or puts one in the place of its children.
 void ChangeCut(std::mt19937& random, std::vector<Quadcode>& nodes) {
   constexpr int kDeepest = 9;
   const Quadcode chosen = nodes[std::uniform_int_distribution<size_t>(0, nodes.size() - 1)(random)];
   if (random() % 2 == 0 && chosen.level() < kDeepest) {
     std::erase(nodes, chosen);
-    for (int which = 0; which < 4; ++which) nodes.push_back(chosen.Child(which));
+    for (const int which : chosen.Children()) nodes.push_back(chosen.Child(which));
     return;
   }
   if (chosen.is_root()) return;
@@ -167,7 +167,7 @@ TEST(SurfaceMesh, ClosedWhereAQuadnodeLiesBesideOnesManyLevelsFiner) {
       const auto found = std::find(nodes.begin(), nodes.end(), deep);
       ASSERT_NE(found, nodes.end());
       nodes.erase(found);
-      for (int which = 0; which < 4; ++which) nodes.push_back(deep.Child(which));
+      for (const int which : deep.Children()) nodes.push_back(deep.Child(which));
     }
     ExpectClosed(MakeSurface(random, nodes, ToEcef({latitude, longitude, 5000}), 4.0));
   }

@@ -51,7 +51,7 @@ class SurfaceMorphTest : public testing::Test {
     for (int l = 0; l < level; ++l) {
       const Quadcode deep = Quadcode::Containing(kLatitude, kLongitude, l);
       nodes.erase(std::find(nodes.begin(), nodes.end(), deep));
-      for (int which = 0; which < 4; ++which) nodes.push_back(deep.Child(which));
+      for (const int which : deep.Children()) nodes.push_back(deep.Child(which));
     }
     eye_ecef_ = ToEcef({kLatitude, kLongitude, height_m});
     std::vector<CutNode> cut;

@@ -105,7 +105,7 @@ TEST(BuildVoids, WhatIsValidStaysAsItIs) {
     if (node.level() < 4 || !b->Exists(0, node)) continue;
     const auto own = a->ReadElevation(0, node), other = b->ReadElevation(0, node);
     ASSERT_TRUE(own.ok() && other.ok());
-    const double spacing = node.SizeDegrees() / kCells;
+    const double spacing = node.HeightDegrees() / kCells;
     for (int row = 0; row < kPosts; ++row) {
       for (int column = 0; column < kPosts; ++column) {
         const double longitude = node.Box().west_deg + spacing * column,

@@ -27,7 +27,7 @@ inline void ExpectSharedPosts(const Dataset& dataset) {
     for (const auto& [dx, dy] : {std::pair{1, 0}, std::pair{0, 1}, std::pair{1, 1}}) {
       if (node.row() + dy >= (int64_t{kTreeRows} << node.level())) continue;
       const Quadcode other = Quadcode::FromColumnRow(node.level(), node.column() + dx, node.row() + dy);
-      if (!dataset.Exists(0, other)) continue;
+      if (!dataset.Exists(0, other) || other.Doublings() != node.Doublings()) continue;
       const auto theirs = dataset.ReadElevation(0, other);
       ASSERT_TRUE(theirs.ok());
       for (int row = dy * kCells - kApron; row < kPosts + kApron; ++row) {
@@ -47,8 +47,8 @@ inline std::array<int, 4> TexelAt(const Dataset& dataset, double latitude, doubl
   const auto page = dataset.ReadImage(0, node);
   EXPECT_TRUE(page.ok()) << page.message();
   const GeoBox box = node.Box();
-  const int column = kImageGutter + static_cast<int>((longitude - box.west_deg) / node.SizeDegrees() * kImageInner);
-  const int row = kImageGutter + static_cast<int>((latitude - box.south_deg) / node.SizeDegrees() * kImageInner);
+  const int column = kImageGutter + static_cast<int>((longitude - box.west_deg) / node.WidthDegrees() * kImageInner);
+  const int row = kImageGutter + static_cast<int>((latitude - box.south_deg) / node.HeightDegrees() * kImageInner);
   const uint8_t* texel = &(*page)->texels[static_cast<size_t>(4 * (row * kImageSide + column))];
   return {texel[0], texel[1], texel[2], texel[3]};
 }

@@ -89,7 +89,7 @@ TEST(ChangedExtents, TouchEveryPageThatHoldsAPositionInThem) {
     const Quadcode near = Quadcode::Containing(i % 4 == 0 ? (i % 8 == 0 ? 89.9 : -89.9) : uniform(-90, 90),
                                                i % 3 == 0 ? 179.9 : uniform(-180, 180), level);
     const GeoBox box = near.Box();
-    const double size = near.SizeDegrees();
+    const double size = near.HeightDegrees();
     const double west = box.west_deg + uniform(-0.3, 1.2) * size, south = box.south_deg + uniform(-0.3, 1.2) * size;
     const GeoBox extent{west, std::max(south, -90.0), west + size / 10, std::min(south + size / 10, 90.0)};
     if (!(extent.south_deg < extent.north_deg)) continue;

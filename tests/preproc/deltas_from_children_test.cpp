@@ -47,8 +47,9 @@ class Pages {
     std::shared_ptr<ElevationPage> page = MakeElevation(node, Rough);
     std::array<BoundedPage, 4> children;
     if (levels > 0) {
-      for (int which = 0; which < 4; ++which)
+      for (const int which : node.Children())
         children[static_cast<size_t>(which)] = Make(node.Child(which), which == 2 ? levels - 1 : 0);
+      HalveWide(node, children);
     }
     CellDeviations deviations = BoundPage(*page, levels > 0 ? &children : nullptr);
     if (levels > 0) page->deltas = DeltasFromChildren(node, *page, children);
@@ -61,8 +62,8 @@ class Pages {
 // Where the node's post (column, row) is.
 glm::dvec3 PlaceOf(Quadcode node, const ElevationPage& page, int column, int row) {
   const GridPoint corner = node.SouthWest();
-  const GridPoint point{corner.x + static_cast<uint32_t>(column) * node.PostSpacing(),
-                        corner.y + static_cast<uint32_t>(row) * node.PostSpacing()};
+  const GridPoint point{corner.x + static_cast<uint32_t>(column) * node.PostSpacingEast(),
+                        corner.y + static_cast<uint32_t>(row) * node.PostSpacingNorth()};
   return ToEcef({point.latitude_deg(), point.longitude_deg(), page.at(column, row) * 1e-3});
 }
 
@@ -75,17 +76,18 @@ double GreatestDistance(const Pages& pages, Quadcode root, Post post) {
     const glm::dvec3 at_a = PlaceOf(root, page, a.column, a.row), at_b = PlaceOf(root, page, b.column, b.row),
                      at_c = PlaceOf(root, page, c.column, c.row);
     const double area = (b.column - a.column) * (c.row - a.row) - (c.column - a.column) * (b.row - a.row);
-    const std::function<void(Quadcode, double, double, double)> visit = [&](Quadcode node, double west, double south,
-                                                                            double post_size) {
+    const std::function<void(Quadcode)> visit = [&](Quadcode node) {
       if (pages.has(node.Child(0))) {
-        for (int which = 0; which < 4; ++which)
-          visit(node.Child(which), west + which % 2 * kCells * post_size / 2,
-                south + which / 2 * kCells * post_size / 2, post_size / 2);
+        for (const int which : node.Children()) visit(node.Child(which));
         return;
       }
+      const double post_width = static_cast<double>(node.PostSpacingEast()) / root.PostSpacingEast();
+      const double post_height = static_cast<double>(node.PostSpacingNorth()) / root.PostSpacingNorth();
+      const double west = static_cast<double>(node.SouthWest().x - root.SouthWest().x) / root.PostSpacingEast();
+      const double south = static_cast<double>(node.SouthWest().y - root.SouthWest().y) / root.PostSpacingNorth();
       for (int row = 0; row < kPosts; ++row) {
         for (int column = 0; column < kPosts; ++column) {
-          const double x = west + column * post_size - a.column, y = south + row * post_size - a.row;
+          const double x = west + column * post_width - a.column, y = south + row * post_height - a.row;
           const double u = (x * (c.row - a.row) - (c.column - a.column) * y) / area;
           const double v = ((b.column - a.column) * y - x * (b.row - a.row)) / area;
           if (u < 0 || v < 0 || u + v > 1) continue;
@@ -94,7 +96,7 @@ double GreatestDistance(const Pages& pages, Quadcode root, Post post) {
         }
       }
     };
-    visit(root, 0, 0, 1);
+    visit(root);
   };
   for (const Post apex : {split.apex_a, split.apex_b}) {
     if (apex.inside()) add_triangle(apex, split.end_a, split.end_b);
@@ -114,6 +116,10 @@ std::vector<Post> PostsToTry() {
   return posts;
 }
 
+bool AtPole(Quadcode node) {
+  return node.touches_north_pole() || node.touches_south_pole();
+}
+
 const std::vector<Quadcode>& NodesToTry() {
   static const std::vector<Quadcode> kNodes{
       Quadcode::Root(20),  // then one anywhere, a pole and 180 W, 180 E and a pole
@@ -131,6 +137,8 @@ TEST(DeltasFromChildren, WhereTheChildrenAreTheFinestDeltaValuesAreTheGreatestDi
       const double distance = GreatestDistance(pages, node, post);
       const auto delta = static_cast<double>(deltas[static_cast<size_t>(post.index())]);
       EXPECT_GE(delta, distance - rounding_m) << node.ToString() << " " << post.column << " " << post.row;
+      // Of a wide child's surface more than its posts counts (HalveWide); how much more the next test says.
+      if (AtPole(node)) continue;
       // A root spans too much of the Earth to be taken for a paraboloid.
       const double looser = node.is_root() ? 1.3 : 1.02;
       EXPECT_LE(delta, distance * std::exp2(1.0 / kDeltaStepsPerOctave) * looser + 2 * rounding_m)
@@ -153,7 +161,8 @@ TEST(DeltasFromChildren, WhatIsFinerThanTheChildrenIsInTheDeltaValues) {
       ratios += delta / distance;
       ++posts;
     }
-    EXPECT_LT(ratios / posts, 1.25) << node.ToString() << ": the bound is far from what it bounds";
+    // What a wide child may add (HalveWide) is half of all that is left here.
+    EXPECT_LT(ratios / posts, AtPole(node) ? 1.6 : 1.25) << node.ToString() << ": the bound is far from what it bounds";
   }
 }
 

@@ -292,8 +292,8 @@ TEST(Export, ColoursAreTheTexelsStoredOver180E) {
           Quadcode::Containing(latitude, longitude > 180 ? longitude - 360 : longitude, report.grid.level);
       const GeoBox box = node.Box();
       const double east = longitude - box.west_deg - (longitude > 180 ? 360 : 0);
-      const auto x = static_cast<int>(east / node.SizeDegrees() * kImageInner);
-      const auto y = static_cast<int>((latitude - box.south_deg) / node.SizeDegrees() * kImageInner);
+      const auto x = static_cast<int>(east / node.HeightDegrees() * kImageInner);
+      const auto y = static_cast<int>((latitude - box.south_deg) / node.HeightDegrees() * kImageInner);
       for (int band = 0; band < 4; ++band) {
         const auto texel = static_cast<size_t>((y + kImageGutter) * kImageSide + x + kImageGutter);
         ASSERT_EQ(read.at(band, column, row), pages.At(node).texels[4 * texel + static_cast<size_t>(band)]);
@@ -302,6 +302,34 @@ TEST(Export, ColoursAreTheTexelsStoredOver180E) {
       ASSERT_NEAR(read.at(1, column, row), 128 + latitude, 1.5);
     }
   }
+}
+
+// Near a pole pages are wide: what lies between their posts is enlarged along parallels, without steps or shift.
+TEST(Export, AtAPoleHeightsAreThoseOfTheSource) {
+  const std::string folder = FreshFolder("export_pole");
+  const auto height = [](double longitude, double latitude) {
+    return 1000 + 900 * std::cos(latitude * M_PI / 180) * std::cos(longitude * M_PI / 180);
+  };
+  constexpr double kPixel_deg = 0.25;
+  Write(folder + "/cap.tif",
+        {.width = 1440, .height = 120, .affine = Degrees(-180, 90, kPixel_deg), .value = [&](int, int column, int row) {
+           return height(-180 + (column + 0.5) * kPixel_deg, 90 - (row + 0.5) * kPixel_deg);
+         }});
+  MustBuild(folder, Layer("elevation", {"path = \"cap.tif\"\nunit = \"m\"\ndatum = \"ellipsoid\""}));
+  const auto dataset = MustOpen(folder);
+  const std::string out = folder + "/cap_out.tif";
+  const auto report = MustExport(*dataset, {.layer = "elevation", .out = out, .extent = GeoBox{-30, 65, 60, 90}});
+  EXPECT_EQ(report.grid.level, dataset->MaxLevel(0));
+  const ReadBack read = Read(out);
+  double worst_m = 0;
+  for (int row = 0; row < read.height; ++row) {
+    if (read.latitude(row) > 90 - kPixel_deg) continue;  // nearer to the pole than the source's own pixels
+    for (int column = 0; column < read.width; ++column) {
+      const double off_m = read.at(0, column, row) - height(read.longitude(column), read.latitude(row));
+      worst_m = std::max(worst_m, std::abs(off_m));
+    }
+  }
+  EXPECT_LT(worst_m, 0.5);
 }
 
 TEST(Export, CoarserImageryIsEnlargedWithoutStepsOrShift) {

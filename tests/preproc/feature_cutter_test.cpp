@@ -70,7 +70,7 @@ TEST(FeatureCutter, PagesAreAPyramidOfFours) {
   int complete = 0;
   for (const auto& [word, page] : pages) {
     const Quadcode node = *Quadcode::FromWord(word);
-    for (int which = 0; which < 4; ++which)
+    for (const int which : node.Children())
       ASSERT_EQ(pages.contains(node.Child(which).word()), !page.is_complete) << node.ToString();
     complete += page.is_complete;
   }
@@ -106,7 +106,7 @@ TEST(FeatureCutter, NeighboursShareThePointsOnTheirBorder) {
     if (!page.is_complete || other == pages.end() || !other->second.is_complete) continue;
     std::multiset<int32_t> ours, theirs;
     for (const VectorPoint& point : page.points) {
-      if (point.x == static_cast<int32_t>(node.GridSize())) ours.insert(point.y);
+      if (point.x == static_cast<int32_t>(node.GridWidth())) ours.insert(point.y);
     }
     for (const VectorPoint& point : other->second.points) {
       if (point.x == 0) theirs.insert(point.y);
@@ -151,7 +151,7 @@ TEST(FeatureCutter, SmallThingsAppearOnlyWhereTheyAreSeen) {
       Line(0, {GridPlace::At(50.2, 10.2), GridPlace::At(50.201, 10.201), GridPlace::At(50.202, 10.2005)})};
   for (const auto& [word, page] : Cut(features)) {
     const Quadcode node = *Quadcode::FromWord(word);
-    const bool is_seen = 0.002 >= node.SizeDegrees() / 2048;
+    const bool is_seen = 0.002 >= node.HeightDegrees() / 2048;
     EXPECT_TRUE(is_seen || page.features.empty()) << node.ToString();
     pages += page.features.empty() ? 0 : 1;
   }
@@ -184,7 +184,7 @@ TEST(FeatureCutter, BuildingsAreNeverCut) {
       const VectorPoint corner = page.points[ring.first_point], other = page.points[ring.first_point + 2];
       EXPECT_EQ(other.x - corner.x, 1500);
       EXPECT_EQ(other.y - corner.y, 900);
-      const int64_t middle_x = corner.x + 750, middle_y = corner.y + 450, side = node.GridSize();
+      const int64_t middle_x = corner.x + 750, middle_y = corner.y + 450, side = node.GridHeight();
       EXPECT_TRUE(middle_x >= 0 && middle_x < side && middle_y >= 0 && middle_y < side);
     }
   }

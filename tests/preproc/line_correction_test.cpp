@@ -23,7 +23,7 @@ GridPlace Offset(double east_m, double north_m) {
   return {corner.x + std::llround(east_m / kMetresPerUnit), corner.y + std::llround(north_m / kMetresPerUnit)};
 }
 double SpacingM() {
-  return kNode.PostSpacing() * kMetresPerUnit;
+  return kNode.PostSpacingNorth() * kMetresPerUnit;
 }
 
 Feature Line(FeatureClass of, const FeaturePart& places) {
@@ -43,7 +43,7 @@ glm::dvec2 MetresOf(double latitude_deg, double longitude_deg) {
 
 std::vector<int32_t> Posts(Quadcode node, const std::function<double(double, double)>& height_m) {
   std::vector<int32_t> heights;
-  const double step = node.SizeDegrees() / kCells;
+  const double step = node.HeightDegrees() / kCells;
   const GridPoint corner = node.SouthWest();
   for (int row = -kApron; row < kPosts + kApron; ++row) {
     for (int column = -kApron; column < kPosts + kApron; ++column)
@@ -159,7 +159,7 @@ TEST(LineCorrection, CoarsePagesAreLeftAlone) {
     std::vector<int32_t> heights = Posts(node, ground);
     const std::vector<int32_t> before = heights;
     correction.Apply(node, heights);
-    EXPECT_EQ(heights == before, node.PostSpacing() * kMetresPerUnit > 30) << level;
+    EXPECT_EQ(heights == before, node.PostSpacingNorth() * kMetresPerUnit > 30) << level;
   }
 }
 

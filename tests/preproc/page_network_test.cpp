@@ -21,7 +21,7 @@ NetworkEnds Ends(std::map<uint64_t, uint8_t>& out, int& fetched) {
             PropertyPage page;
             page.values.assign(static_cast<size_t>(kElevationSide) * kElevationSide,
                                static_cast<uint8_t>(fetched % 200));
-            return StoredPage{Quadcode::FromColumnRow(6, fetched++, 3), EncodeProperty(page)};
+            return StoredPage{Quadcode::FromColumnRow(6, fetched++, 100), EncodeProperty(page)};
           },
           [&out](const StoredPage& page) {
             const auto decoded = DecodeProperty(page.bytes);
@@ -88,7 +88,7 @@ TEST_F(PageNetwork, EveryPageGoesThroughEveryModuleOnce) {
     int fetched = 0;
     ASSERT_TRUE(Run(TypeWith({{"add one", false, {}}, {"add one", true, {}}}), Ends(out, fetched), jobs).ok());
     ASSERT_EQ(out.size(), static_cast<size_t>(kPages));
-    for (int i = 0; i < kPages; ++i) EXPECT_EQ(out.at(Quadcode::FromColumnRow(6, i, 3).word()), i % 200 + 2);
+    for (int i = 0; i < kPages; ++i) EXPECT_EQ(out.at(Quadcode::FromColumnRow(6, i, 100).word()), i % 200 + 2);
   }
 }
 

@@ -30,9 +30,10 @@ TEST(Plan, LevelZeroIsWholeAndFinerNodesFollowTheSource) {
   EXPECT_EQ(CountNodes({}), kTrees);
   // Within one quadnode of every level: three siblings of each level come with the one that holds it.
   const std::vector<PlannedSource> inside = {{{10.01, 50.01, 10.02, 50.02}, 5}};
-  EXPECT_EQ(CountNodes(inside), kTrees + 4 * 5);
+  EXPECT_EQ(CountNodes(inside), kTrees + 3 + 4 * 4);  // three of a root at a pole
   const std::vector<PlannedSource> world = {{{-180, -90, 180, 90}, 3}};
-  EXPECT_EQ(CountNodes(world), kTrees * (1 + 4 + 16 + 64));
+  // Half of the trees have a pole: of level n they have 3 * 4^(n-1) quadnodes less those that are twice as wide.
+  EXPECT_EQ(CountNodes(world), 16 * (1 + 4 + 16 + 64) + 16 * (1 + 3 + (2 * 4 + 2) + (2 * 16 + 4 + 2)));
   EXPECT_EQ(SourceLevel(inside, Quadcode::Containing(50.015, 10.015, 3)), 5);
   EXPECT_EQ(SourceLevel(inside, Quadcode::Containing(-50, 10, 3)), 0);
 }

@@ -155,5 +155,44 @@ TEST(SurfaceError, ExtremesIncludeWhatIsFiner) {
   EXPECT_LT(page->max_m, 8848.87f);
 }
 
+// At the south pole a page has a child at the pole, and one beside it, each as wide as itself.
+TEST(SurfaceError, HalvesOfAWideChildSayHowFarItsTrianglesAreFromTheirs) {
+  std::mt19937 random(12);
+  const Quadcode pole = Quadcode::Root(3).Child(0);
+  std::array<BoundedPage, 4> children;
+  const auto wide = Rough(random);
+  for (const int which : pole.Children()) {
+    EXPECT_TRUE(IsWide(pole, static_cast<size_t>(which)));
+    children[static_cast<size_t>(which)] = Finest(wide);
+  }
+  HalveWide(pole, children);
+  std::uniform_real_distribution<double> unit(0, 1);
+  double closest_m = 1e9;
+  for (int n = 0; n < 200000; ++n) {
+    const double x = kCells * unit(random), y = kCells * unit(random);
+    const size_t half = x >= kCells / 2 ? 1 : 0;
+    const double own_x = 2 * x - static_cast<double>(half) * kCells;
+    const BoundedPage& child = children[half];
+    const auto cell = static_cast<size_t>(y) * kCells + static_cast<size_t>(own_x);
+    const double off_m = TriangleHeight(*wide, x, y) - TriangleHeight(*child.page, own_x, y);
+    const double low_m = child.deviations[cell].low * kMetresPerDeviation;
+    const double high_m = child.deviations[cell].high * kMetresPerDeviation;
+    ASSERT_GE(off_m, low_m) << x << " " << y;
+    ASSERT_LE(off_m, high_m) << x << " " << y;
+    if (high_m > 10) closest_m = std::min(closest_m, (high_m - std::abs(off_m)) / high_m);
+  }
+  EXPECT_LT(closest_m, 0.05) << "what is promised is reached somewhere";
+}
+
+TEST(SurfaceError, FarFromThePolesNoChildIsHalved) {
+  std::mt19937 random(13);
+  const Quadcode node = Quadcode::Containing(40, 10, 6);
+  std::array<BoundedPage, 4> children;
+  for (auto& child : children) child = Finest(Rough(random));
+  const std::array<BoundedPage, 4> before = children;
+  HalveWide(node, children);
+  for (size_t which = 0; which < 4; ++which) EXPECT_EQ(children[which].page, before[which].page);
+}
+
 }  // namespace
 }  // namespace belvedere

@@ -17,7 +17,7 @@ ElevationPage PageOf(Quadcode node, const std::function<double(double, double)>&
   const GeoBox box = node.Box();
   for (int row = -kApron; row < kPosts + kApron; ++row) {
     for (int column = -kApron; column < kPosts + kApron; ++column) {
-      const double step_deg = node.SizeDegrees() / kCells;
+      const double step_deg = node.HeightDegrees() / kCells;
       page.heights_mm.push_back(static_cast<int32_t>(
           std::lrint(1000 * height_m(box.west_deg + column * step_deg, box.south_deg + row * step_deg))));
     }
@@ -66,7 +66,7 @@ TEST(SurfaceProperties, RoughnessIsTheDeviationFromThePlane) {
 TEST(SurfaceProperties, WaterIsWhatLiesAtSeaLevelOrBelow) {
   const auto sea = Geoid::LoadEgm96();
   ASSERT_TRUE(sea.ok()) << sea.message();
-  const double shore_deg = kNode.Box().west_deg + kNode.SizeDegrees() / 2;
+  const double shore_deg = kNode.Box().west_deg + kNode.HeightDegrees() / 2;
   const ElevationPage page = PageOf(kNode, [&](double longitude, double latitude) {
     return (*sea)->Height(latitude, longitude) + (longitude > shore_deg          ? 20.0
                                                   : longitude > shore_deg - 0.01 ? 0.0

@@ -43,7 +43,8 @@ TEST(DrawnGround, IsTheHeightOfTheTrianglesAtThePlace) {
 TEST(DrawnGround, IsThatOfWhatIsDrawnAndNotOfThePage) {
   const auto spike = [](double latitude_deg, double) { return std::abs(latitude_deg - 10.0) < 1e-9 ? 500.0 : 0.0; };
   const Quadcode node = Quadcode::Containing(10, 20, 10);
-  const double between_deg = node.Box().south_deg + 4.0 * node.SizeDegrees() / kCells;  // left out with every 8th post
+  const double between_deg =
+      node.Box().south_deg + 4.0 * node.HeightDegrees() / kCells;  // left out with every 8th post
   const Ground ground(
       between_deg, 20.01, 10,
       [&](double latitude_deg, double longitude_deg) {

@@ -5,6 +5,7 @@
 #include "render/render_thread.h"
 #include "runtime/earth/ellipsoid.h"
 #include "runtime/earth/frame.h"
+#include "runtime/paging/model_catalogue.h"
 #include "runtime/paging/shared_cache.h"
 
 #include <glm/geometric.hpp>
@@ -51,7 +52,7 @@ inline std::unique_ptr<TerrainPage> MakeTerrain(Quadcode node, const Height& hei
   glm::dvec3 high(-1e30);
   for (uint32_t row = 0; row < kPosts; ++row) {
     for (uint32_t column = 0; column < kPosts; ++column) {
-      const GridPoint point{corner.x + column * node.PostSpacing(), corner.y + row * node.PostSpacing()};
+      const GridPoint point{corner.x + column * node.PostSpacingEast(), corner.y + row * node.PostSpacingNorth()};
       const TerrainVertex vertex = VertexAt(frame, point, height);
       page->vertices.push_back(vertex);
       const glm::dvec3 ecef = frame.ToEcef({vertex.x, vertex.y, vertex.z});
@@ -114,7 +115,7 @@ class Scene {
                          }));
   }
   PagePin AddModel(int number, std::unique_ptr<ModelPage> page) {
-    return cache_.Insert({model_, Quadcode::FromColumnRow(kMaxLevel, number, 0)}, std::move(page));
+    return cache_.Insert({model_, ModelCatalogue::ModelNode(number)}, std::move(page));
   }
   // What is on the GPU of the cache's pages; empty where the page is not.
   PagePin Find(DataType type, Quadcode node) { return cache_.Find({type, node}); }

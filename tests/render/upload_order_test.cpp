@@ -14,7 +14,7 @@ struct NoPage final : Page {
 class UploadOrder : public ::testing::Test {
  protected:
   PagePin Page(int number) {
-    return cache_.Insert({0, Quadcode::FromColumnRow(10, number, 0)}, std::make_unique<NoPage>());
+    return cache_.Insert({0, Quadcode::FromColumnRow(10, number, 2000)}, std::make_unique<NoPage>());
   }
   std::vector<int64_t> Order(const std::vector<std::vector<PagePin>>& lists, size_t turn) {
     std::vector<std::span<const PagePin>> wishes(lists.begin(), lists.end());

@@ -284,7 +284,7 @@ TEST(Dataset, BilinearHeightIsThatOfThePosts) {
   const Quadcode node = Quadcode::Root(12).Child(1);
   const ElevationPage page = Slope(node);
   const GeoBox box = node.Box();
-  const double cell = node.SizeDegrees() / kCells;
+  const double cell = node.HeightDegrees() / kCells;
   EXPECT_NEAR(BilinearHeight(page, node, box.south_deg, box.west_deg), page.at(0, 0) / 1000.0, 1e-9);
   EXPECT_NEAR(BilinearHeight(page, node, box.north_deg, box.east_deg), page.at(kCells, kCells) / 1000.0, 1e-9);
   const double middle = (page.at(4, 9) + page.at(5, 9) + page.at(4, 10) + page.at(5, 10)) / 4000.0;

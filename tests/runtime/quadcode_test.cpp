@@ -1,7 +1,11 @@
 #include "runtime/earth/quadcode.h"
 
+#include "runtime/earth/units.h"
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 #include <unordered_set>
 
@@ -62,7 +66,7 @@ TEST(Quadcode, RoundTripsThroughColumnsAndRows) {
     EXPECT_EQ(Quadcode::FromColumnRow(node.level(), node.column(), node.row()), node);
     EXPECT_EQ(Quadcode::FromWord(node.word()), node);
     EXPECT_EQ(Quadcode::Parse(node.ToString()), node);
-    const int64_t columns = int64_t{kTreeColumns} << node.level();
+    const int64_t columns = Quadcode::ColumnsAround(node.level(), node.row());
     EXPECT_EQ(Quadcode::FromColumnRow(node.level(), node.column() - columns, node.row()), node);
     EXPECT_EQ(Quadcode::FromColumnRow(node.level(), node.column() + columns, node.row()), node);
   }
@@ -100,21 +104,103 @@ TEST(Quadcode, GridPointsMeetOverAllLevels) {
     const GridPoint corner = node.SouthWest();
     EXPECT_DOUBLE_EQ(corner.longitude_deg(), node.Box().west_deg);
     EXPECT_DOUBLE_EQ(corner.latitude_deg(), node.Box().south_deg);
-    EXPECT_EQ(node.PostSpacing() * kCells, node.GridSize());
+    EXPECT_EQ(node.PostSpacingNorth() * kCells, node.GridHeight());
+    EXPECT_EQ(node.PostSpacingEast() * kCells, node.GridWidth());
     if (node.level() == kMaxLevel) continue;
     EXPECT_EQ(node.Child(0).SouthWest(), corner);
-    const GridPoint inner = node.Child(3).SouthWest();
-    EXPECT_EQ(inner.x - corner.x, node.GridSize() / 2);
-    EXPECT_EQ(inner.y - corner.y, node.GridSize() / 2);
+    const Quadcode last = node.Child(node.Children().back());
+    EXPECT_EQ(last.SouthWest().x + last.GridWidth() - corner.x, node.GridWidth());
+    EXPECT_EQ(last.SouthWest().y + last.GridHeight() - corner.y, node.GridHeight());
   }
   const Quadcode last = Quadcode::FromColumnRow(4, -1, 0);
-  EXPECT_EQ(last.SouthWest().x + last.GridSize(), 0u);  // 180 E is 180 W
-  EXPECT_EQ(Quadcode::Root(31).SouthWest().y + Quadcode::Root(31).GridSize(), kGridNorthPole);
+  EXPECT_EQ(last.SouthWest().x + last.GridWidth(), 0u);  // 180 E is 180 W
+  EXPECT_EQ(Quadcode::Root(31).SouthWest().y + Quadcode::Root(31).GridHeight(), kGridNorthPole);
+}
+
+// Decision 0023.
+TEST(Quadcode, EightMeetAtAPoleAndNoneIsASlice) {
+  for (int level = 1; level <= kMaxLevel; ++level) {
+    for (const int64_t row : {int64_t{0}, (int64_t{kTreeRows} << level) - 1}) {
+      EXPECT_EQ(Quadcode::ColumnsAround(level, row), kTreeColumns);
+      EXPECT_EQ(Quadcode::FromColumnRow(level, 3, row).WidthDegrees(), kTreeDegrees);
+    }
+  }
+  for (int level = 3; level <= 12; ++level) {
+    for (double latitude_deg = 67.6; latitude_deg < 89.9; latitude_deg += 0.37) {
+      const Quadcode node = Quadcode::Containing(-latitude_deg, 100, level);
+      if (node.touches_south_pole()) continue;
+      const GeoBox box = node.Box();
+      const double ratio = node.WidthDegrees() / node.HeightDegrees();
+      EXPECT_LT(ratio * std::cos(box.north_deg * kRadiansPerDegree), 1.6) << node.ToString();
+      EXPECT_GT(ratio * std::cos(box.south_deg * kRadiansPerDegree), 0.7) << node.ToString();
+    }
+  }
+  EXPECT_EQ(Quadcode::Containing(67.4, 10, 9).Doublings(), 0);
+  EXPECT_EQ(Quadcode::Containing(67.6, 10, 9).Doublings(), 2);
+  EXPECT_EQ(Quadcode::Containing(79, 10, 9).Doublings(), 3);
+}
+
+TEST(Quadcode, ChildrenCoverTheirParentOnce) {
+  std::vector<Quadcode> nodes = SomeNodes();
+  for (int tree = 0; tree < kTrees; ++tree) nodes.push_back(Quadcode::Root(tree));
+  for (const Quadcode node : nodes) {
+    if (node.level() == kMaxLevel) continue;
+    double area = 0;
+    const GeoBox box = node.Box();
+    for (const int which : node.Children()) {
+      const Quadcode child = node.Child(which);
+      EXPECT_EQ(child.Parent(), node);
+      EXPECT_EQ(Quadcode::FromWord(child.word()), child);
+      EXPECT_GE(child.Box().west_deg, box.west_deg);
+      EXPECT_LE(child.Box().east_deg, box.east_deg);
+      EXPECT_EQ(child.Box().south_deg, which < 2 ? box.south_deg : 0.5 * (box.south_deg + box.north_deg));
+      area += child.WidthDegrees() * child.HeightDegrees();
+    }
+    EXPECT_EQ(area, node.WidthDegrees() * node.HeightDegrees());
+    for (int which = 0; which < 4; ++which) {
+      const std::span<const int> children = node.Children();
+      if (std::find(children.begin(), children.end(), which) != children.end()) continue;
+      EXPECT_EQ(Quadcode::FromWord(node.Child(which).word()), std::nullopt) << node.ToString();
+    }
+  }
+}
+
+TEST(Quadcode, WhatIsAroundTouchesIt) {
+  const Quadcode plain = Quadcode::Containing(10, 20, 6);
+  EXPECT_EQ(plain.Around().size(), 9u);
+  // Below 67.5 degrees four quadnodes are as wide as one above it.
+  const std::vector<Quadcode> around = Quadcode::Containing(67.51, 20, 6).Around();
+  EXPECT_EQ(std::count_if(around.begin(), around.end(), [](Quadcode q) { return q.Doublings() == 0; }), 6);
+  EXPECT_EQ(around.size(), 12u);
+  for (const Quadcode node : SomeNodes()) {
+    const std::vector<Quadcode> all = node.Around();
+    EXPECT_NE(std::find(all.begin(), all.end(), node), all.end());
+    for (const Quadcode other : all) {
+      EXPECT_EQ(other.level(), node.level());
+      EXPECT_LE(std::abs(other.row() - node.row()), 1);
+      const uint32_t a = node.SouthWest().x, b = other.SouthWest().x;
+      EXPECT_TRUE(b - a <= node.GridWidth() || a - b <= other.GridWidth()) << node.ToString() << other.ToString();
+    }
+  }
+}
+
+TEST(Quadcode, BesideAParallelLiesTheCoarsestThatIsNoWider) {
+  const Quadcode plain = Quadcode::Containing(10, 20, 6);
+  EXPECT_EQ(plain.BesideParallel(true), Quadcode::FromColumnRow(6, plain.column(), plain.row() + 1));
+  EXPECT_EQ(plain.BesideParallel(false), Quadcode::FromColumnRow(6, plain.column(), plain.row() - 1));
+  const Quadcode below = Quadcode::Containing(67.49, 20, 6), above = Quadcode::Containing(67.51, 20, 8);
+  EXPECT_EQ(below.BesideParallel(true), above);
+  EXPECT_EQ(above.BesideParallel(false), below);
+  EXPECT_EQ(Quadcode::Containing(80, 20, 1).BesideParallel(false), Quadcode::Containing(67.49, 1, 1));
+  EXPECT_EQ(Quadcode::Containing(89.9, 20, 4).BesideParallel(true), std::nullopt);
+  EXPECT_EQ(Quadcode::Containing(-89.9, 20, 4).BesideParallel(false), std::nullopt);
+  EXPECT_EQ(Quadcode::Containing(67.4999999, 20, kMaxLevel).BesideParallel(true), std::nullopt);
 }
 
 TEST(Quadcode, RefusesWordsAndTextsThatNameNothing) {
   EXPECT_EQ(Quadcode::FromWord((uint64_t{1} << 59) - 1), std::nullopt);
-  for (const char* text : {"", ":", "12", "32:", "-1:", "1x:", "12:4", "12:01a", "12:00000000000000000000000"}) {
+  for (const char* text : {"", ":", "12", "32:", "-1:", "1x:", "12:4", "12:01a", "12:00000000000000000000000", "24:3",
+                           "24:21", "0:1", "0:03"}) {
     EXPECT_EQ(Quadcode::Parse(text), std::nullopt) << text;
   }
   EXPECT_EQ(Quadcode::Parse("12:"), Quadcode::Root(12));
@@ -125,7 +211,7 @@ TEST(Quadcode, HashesDiffer) {
   std::unordered_set<size_t> hashes;
   for (int64_t column = 0; column < 100; ++column) {
     for (int64_t row = 0; row < 100; ++row)
-      hashes.insert(std::hash<Quadcode>()(Quadcode::FromColumnRow(9, column, row)) & 0xFFFFF);
+      hashes.insert(std::hash<Quadcode>()(Quadcode::FromColumnRow(9, column, 1000 + row)) & 0xFFFFF);
   }
   EXPECT_GT(hashes.size(), 9000u);  // of 10,000 in a million slots
 }

@@ -15,7 +15,7 @@ namespace belvedere {
 namespace {
 
 PageKey Key(int64_t number) {
-  return {0, Quadcode::FromColumnRow(12, number, 0)};
+  return {0, Quadcode::FromColumnRow(12, number, 5000)};
 }
 
 TEST(RequestQueue, GivesTheMostWantedFirst) {

@@ -18,7 +18,7 @@ std::unique_ptr<TerrainPage> Slope(Quadcode node, double base_m, double rise_m_p
   page->vertices.resize(kVerticesPerPage);
   const Frame frame = FrameOf(node);
   const GeoBox box = node.Box();
-  const double step = node.SizeDegrees() / kCells;
+  const double step = node.HeightDegrees() / kCells;
   for (int row = 0; row < kPosts; ++row) {
     for (int column = 0; column < kPosts; ++column) {
       const glm::vec3 local(frame.ToFrame(
@@ -33,7 +33,7 @@ TEST(TerrainHeight, IsBilinearBetweenPosts) {
   const Quadcode node = Quadcode::Containing(37, -118, 10);
   const auto page = Slope(node, 1000, 2);
   const GeoBox box = node.Box();
-  const double step = node.SizeDegrees() / kCells;
+  const double step = node.HeightDegrees() / kCells;
   EXPECT_NEAR(GroundOnPage(*page, box.south_deg, box.west_deg).height_m, 1000, 0.01);
   EXPECT_NEAR(GroundOnPage(*page, box.south_deg + 10.5 * step, box.west_deg + 3.25 * step).height_m, 1021, 0.01);
   EXPECT_NEAR(GroundOnPage(*page, box.north_deg, box.east_deg).height_m, 1256, 0.01);
@@ -46,7 +46,7 @@ TEST(TerrainHeight, TheNormalLeansAwayFromTheRise) {
   const GroundPoint ground =
       GroundOnPage(*page, 0.5 * (box.south_deg + box.north_deg), 0.5 * (box.west_deg + box.east_deg));
   const LevelAxes axes = LevelAxesAt(0.5 * (box.south_deg + box.north_deg), 0.5 * (box.west_deg + box.east_deg));
-  const double cell_m = node.SizeDegrees() / kCells * 110'980;  // of latitude, at 37 degrees
+  const double cell_m = node.HeightDegrees() / kCells * 110'980;  // of latitude, at 37 degrees
   EXPECT_NEAR(-glm::dot(ground.normal_ecef, axes.north) / glm::dot(ground.normal_ecef, axes.up), 10 / cell_m, 1e-3);
   EXPECT_NEAR(glm::dot(ground.normal_ecef, axes.east), 0, 1e-3);
 }

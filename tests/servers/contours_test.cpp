@@ -15,7 +15,7 @@ const Quadcode kNode = Quadcode::Containing(47, 8, 10);
 
 // Ground that rises to the north: base_m at the page's southern edge, a line every `texels`.
 std::unique_ptr<ElevationPage> Ramp(double base_m, double texels) {
-  const double rise_m = ContourInterval(kNode.level()) / texels * kImageInner / kNode.SizeDegrees();
+  const double rise_m = ContourInterval(kNode.level()) / texels * kImageInner / kNode.HeightDegrees();
   return MakeElevation(kNode,
                        [=](GridPoint p) { return base_m + rise_m * (p.latitude_deg() - kNode.Box().south_deg); });
 }

@@ -56,10 +56,10 @@ TEST(Graticule, LinesLieWhereTheCoordinatesAre) {
     const double step_deg = static_cast<double>(GridStep(level)) / kGridUnitsPerDegree;
     const auto page = DrawGraticule(node, NoText());
     const double line_deg = step_deg * std::ceil(node.Box().west_deg / step_deg + 0.1);
-    const double texel = kImageGutter + (line_deg - node.Box().west_deg) / node.SizeDegrees() * kImageInner;
+    const double texel = kImageGutter + (line_deg - node.Box().west_deg) / node.HeightDegrees() * kImageInner;
     const double line_row =
         kImageGutter + (step_deg * std::ceil(node.Box().south_deg / step_deg) - node.Box().south_deg) /
-                           node.SizeDegrees() * kImageInner;
+                           node.HeightDegrees() * kImageInner;
     const int row = static_cast<int>(line_row) + 20;  // clear of the lines of latitude
     EXPECT_NEAR(MiddleOf(*page, row, static_cast<int>(texel) - 4, static_cast<int>(texel) + 5), texel, 0.05) << level;
   }
@@ -81,7 +81,7 @@ TEST(Graticule, ThePoleHasNoLine) {
   for (int column = 0; column < kImageSide; ++column) {
     covered += AlphaAt(*page, column, kImageGutter + kImageInner - 1) > 0 ? 1 : 0;
   }
-  EXPECT_LT(covered, 20);  // meridians alone
+  EXPECT_LT(covered, 50);  // meridians alone
 }
 
 TEST(Graticule, OneLineOfEachDirectionIsNamed) {

@@ -24,8 +24,8 @@ glm::dvec3 Exact(GridPoint point, double height_m) {
 
 GridPoint PointOf(Quadcode node, int column, int row) {
   const GridPoint corner = node.SouthWest();
-  return {corner.x + static_cast<uint32_t>(column) * node.PostSpacing(),
-          corner.y + static_cast<uint32_t>(row) * node.PostSpacing()};
+  return {corner.x + static_cast<uint32_t>(column) * node.PostSpacingEast(),
+          corner.y + static_cast<uint32_t>(row) * node.PostSpacingNorth()};
 }
 
 glm::dvec3 PositionOf(const TerrainVertex& vertex) {

@@ -31,14 +31,14 @@ inline std::unique_ptr<ElevationPage> MakeElevation(Quadcode node, const HeightF
   auto page = std::make_unique<ElevationPage>();
   page->heights_mm.resize(static_cast<size_t>(kElevationSide) * kElevationSide);
   const GridPoint corner = node.SouthWest();
-  const auto spacing = static_cast<int64_t>(node.PostSpacing());
+  const auto east = static_cast<int64_t>(node.PostSpacingEast()), north = static_cast<int64_t>(node.PostSpacingNorth());
   int32_t least = INT32_MAX;
   int32_t greatest = INT32_MIN;
   size_t index = 0;
   for (int row = -kApron; row < kPosts + kApron; ++row) {
     for (int column = -kApron; column < kPosts + kApron; ++column) {
-      const int64_t y = std::clamp<int64_t>(corner.y + row * spacing, 0, kGridNorthPole);
-      const GridPoint point{static_cast<uint32_t>(corner.x + column * spacing), static_cast<uint32_t>(y)};
+      const int64_t y = std::clamp<int64_t>(corner.y + row * north, 0, kGridNorthPole);
+      const GridPoint point{static_cast<uint32_t>(corner.x + column * east), static_cast<uint32_t>(y)};
       const bool at_pole = y == 0 || y == kGridNorthPole;
       const auto height_mm = static_cast<int32_t>(std::lround(1e3 * height_m(at_pole ? GridPoint{0, point.y} : point)));
       page->heights_mm[index++] = height_mm;

@@ -13,7 +13,7 @@ const TexelHeight& At(const std::vector<TexelHeight>& texels, int column, int ro
 
 TEST(TexelHeights, APlaneIsExactToTheOutermostTexel) {
   const Quadcode node = Quadcode::Containing(47, 8, 10);
-  const double spacing_deg = node.SizeDegrees() / kCells;
+  const double spacing_deg = node.HeightDegrees() / kCells;
   const auto page = MakeElevation(node, [&](GridPoint p) {
     return 3 * (p.longitude_deg() - node.Box().west_deg) / spacing_deg +
            5 * (p.latitude_deg() - node.Box().south_deg) / spacing_deg;
@@ -37,10 +37,10 @@ TEST(TexelHeights, AreAboveMeanSeaLevel) {
   const Quadcode node = Quadcode::Containing(6, 79, 9);  // the deepest dent of the geoid
   const auto page = MakeElevation(node, [&](GridPoint) { return 10.0; });
   const auto texels = HeightsAtTexels(*page, node, sea->get());
-  EXPECT_NEAR(
-      At(texels, 128, 128).height_m,
-      10 - (*sea)->Height(node.Box().south_deg + node.SizeDegrees() / 2, node.Box().west_deg + node.SizeDegrees() / 2),
-      0.1);
+  EXPECT_NEAR(At(texels, 128, 128).height_m,
+              10 - (*sea)->Height(node.Box().south_deg + node.HeightDegrees() / 2,
+                                  node.Box().west_deg + node.HeightDegrees() / 2),
+              0.1);
   EXPECT_GT(At(texels, 128, 128).height_m, 90);
 }
 
