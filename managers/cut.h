@@ -15,8 +15,8 @@
 // takes that once, as error_scale. z, and g where it is less, are taken anew for every post (post_selection.h). What is
 // out of sight, quadnodes and triangles within them (likewise), keeps a share of its error, so that turning the head
 // does not start from nothing. A quadnode is out of sight where its sphere is, or where the box around its ground lies
-// beyond one side of a picture that is wider by kBesideGuard: near a pole quadnodes are slices, of which spheres say
-// nothing.
+// beyond one side of a picture that is wider by kBesideGuard: spheres say little of quadnodes that are long or, by a
+// pole, pointed (ground_bounds.h).
 //
 // Steps. Where a layer has gone on to another of its steps (step_change.h), a quadnode shows the step before until the
 // image of the new one that suits it is on the GPU, or one as fine as that of the step before: nothing coarser is

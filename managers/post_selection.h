@@ -20,9 +20,10 @@
 // nearest depth, so that triangles can be kept (kept_triangles.h). It is a bound for what is seen; what is not has no g
 // that matters.
 //
-// Triangles that lie beside the picture, and by more than kBesideGuard away from it, need keep their error under a
-// looser bound only: kShareBesidePicture of it counts. They lie there as well for any later eye, whose picture's sides
-// have turned, and which has come nearer by a share of the least distance, by no more than kBesideGuard together.
+// Triangles that lie beside the picture with all their corners, and by more than kBesideGuard away from it, need keep
+// their error under a looser bound only: kShareBesidePicture of it counts. They lie there as well for any later eye,
+// whose picture's sides have turned, and which has come nearer by a share of the least distance, by no more than
+// kBesideGuard together.
 //
 // Source of the bisection: Evans, Kirkpatrick, Townsend, "Right-triangulated irregular networks" (Algorithmica 2001).
 // Units: pixels, metres. Threads: one an object.

@@ -86,8 +86,10 @@ class Bench:
         self.add(what, limit, value, kept(float(value)))
 
     def station(self):
-        self.figure("quadnodes and triangles at the poles over the equator", "<= 1.5", ["poles", self.dataset],
-                    r"largest ratio ([\d.]+)", lambda x: x <= 1.5)
+        poles = self.run("station_figures", "poles", self.dataset)
+        for what in ("quadnodes", "triangles"):
+            ratio = float(re.search(rf"largest ratio.*?of {what} ([\d.]+)", poles).group(1))
+            self.add(f"{what} at the poles over the equator", "< 1.5", ratio, ratio < 1.5)
         self.figure("seconds from a jump to the settled view, longest", "<= 1.0",
                     ["jump", self.dataset, 8 if self.quick else 20], r"longest ([\d.]+) s", lambda x: x <= 1.0)
         self.figure("pixels/s, four views of four places over one", ">= 0.9", ["places", self.dataset],
