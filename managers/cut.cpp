@@ -2,6 +2,7 @@
 
 #include "managers/ground_bounds.h"
 #include "runtime/earth/ellipsoid.h"
+#include "runtime/earth/post_grid.h"
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -29,9 +30,7 @@ constexpr float kGreatestPriority = 1e5F;
 // Of the quadnode's sides on the ground, in degrees of a great circle.
 double LongestSideDegrees(Quadcode node) {
   if (node.Doublings() == 0) return node.HeightDegrees();
-  const GeoBox box = node.Box();
-  const double nearest_equator_deg = std::min(std::abs(box.south_deg), std::abs(box.north_deg));
-  return std::max(node.HeightDegrees(), node.WidthDegrees() * std::cos(nearest_equator_deg * kRadiansPerDegree));
+  return std::max(node.HeightDegrees(), WidthOnGroundDegrees(node));
 }
 
 struct Measure {

@@ -1,5 +1,6 @@
 #include "managers/ground_bounds.h"
 
+#include "runtime/earth/post_grid.h"
 #include "runtime/earth/units.h"
 
 #include <glm/common.hpp>
@@ -29,11 +30,10 @@ GroundBounds::GroundBounds(const TerrainPage& page) {
   axes_ = LevelAxesAt(latitude_deg, longitude_deg);
   const double half_width = 0.5 * page.node.WidthDegrees() * kRadiansPerDegree;
   const double half_height = 0.5 * page.node.HeightDegrees() * kRadiansPerDegree;
-  const double least_latitude = std::min(std::abs(box.south_deg), std::abs(box.north_deg)) * kRadiansPerDegree;
   const double high_m = page.max_height_m;
   const double low_m = page.min_height_m;
   const double radius = kLargestCurvature_m + std::max(0.0, high_m);
-  const double east = half_width * std::cos(least_latitude) * radius;
+  const double east = 0.5 * WidthOnGroundDegrees(page.node) * kRadiansPerDegree * radius;
   // Parallels bend towards the pole, and leave the box's middle line by this at its sides.
   const double north = half_height * radius + east * std::tan(0.5 * half_width);
   const double drop = (east * east + north * north) / (2.0 * kPolarRadius_m);  // of the rim below the middle
@@ -49,8 +49,8 @@ void GroundBounds::MakeHull(const TerrainPage& page, const GeoBox& box) {
   // Of the longer arc two tangents at its ends and one at its middle: they meet a quarter of it from either end.
   const double quarter_deg = 0.25 * page.node.WidthDegrees();
   const double outwards = 1.0 / std::cos(quarter_deg * kRadiansPerDegree);
-  const double width = page.node.WidthDegrees() * std::cos(longer_deg * kRadiansPerDegree);
-  const double across_m = std::hypot(width, page.node.HeightDegrees()) * kRadiansPerDegree * kLargestCurvature_m;
+  const double across_m =
+      std::hypot(WidthOnGroundDegrees(page.node), page.node.HeightDegrees()) * kRadiansPerDegree * kLargestCurvature_m;
   const double bulge_m = across_m * across_m / (8.0 * kPolarRadius_m);  // of the ground over its chords
   for (const double height_m : {double{page.min_height_m}, page.max_height_m + bulge_m}) {
     for (const double longitude_deg : {box.west_deg, box.east_deg}) {

@@ -4,8 +4,8 @@
 //
 // Between quadnodes, each side chooses for itself; then the line that they share is made the same for both. All posts
 // that lie on a border line and are drawn by any quadnode are gathered; each position gets one canonical vertex (that
-// of the narrowest quadnode; border_lines.h); and a triangle whose edge lies on
-// the line is cut as a fan at every canonical vertex of that edge (border_joiner.h). This works for quadnodes of any
+// of the narrowest quadnode; border_lines.h); and a triangle whose edge lies on the line is cut as a fan at every
+// canonical vertex of that edge (border_joiner.h). This works for quadnodes of any
 // levels, across quadtrees, frames and 180 E. On a pole line all positions are one point, hence one vertex.
 //
 // All of that is done again only where something changed since the list before, and around it (reach.h).

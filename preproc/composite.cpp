@@ -38,12 +38,6 @@ int32_t Millimetres(double height_m, int32_t quantum_mm) {
   return quantum_mm * static_cast<int32_t>(std::lrint(height_mm / quantum_mm));
 }
 
-// Of posts, far from the poles.
-Spacing SpacingOfLevel(int level) {
-  const double degrees = std::ldexp(kTreeDegrees / kCells, -level);
-  return {degrees, degrees};
-}
-
 uint8_t Byte(float value) {
   return static_cast<uint8_t>(std::clamp(value, 0.0f, 255.0f) + 0.5f);
 }
@@ -90,8 +84,8 @@ void WriteTexels(const LatticeRows& lattice, const std::vector<float>& colours, 
 }  // namespace
 
 Composite::Composite(LayerKind kind, const std::vector<RasterSource*>& sources, const Geoid& geoid)
-    : kind_(kind), geoid_(geoid), void_fill_([this](size_t which, const LatticeRows& lattice, int level) {
-        return GroundOf(which, lattice, level);
+    : kind_(kind), geoid_(geoid), void_fill_([this](size_t which, const LatticeRows& lattice, Quadcode node) {
+        return GroundOf(which, lattice, node);
       }) {
   for (auto source = sources.rbegin(); source != sources.rend(); ++source) samplers_.emplace_back(**source, kind);
 }
@@ -145,13 +139,13 @@ Composite::Heights Composite::HeightsAt(const LatticeRows& lattice, const Spacin
   return heights;
 }
 
-VoidFill::Ground Composite::GroundOf(size_t which, const LatticeRows& lattice, int level) {
-  const Spacing spacing = SpacingOfLevel(level);
+VoidFill::Ground Composite::GroundOf(size_t which, const LatticeRows& lattice, Quadcode node) {
+  const Spacing spacing = PostSpacingOf(node);
   const Samples<double> samples = samplers_[which].Sample<double>(lattice, spacing, false);
   const std::vector<double> undulation = geoid_.Heights(lattice.latitudes_deg, lattice.longitudes_deg);
   const std::vector<double> datum_m =
       samplers_[which].source().DatumHeights(lattice.latitudes_deg, lattice.longitudes_deg, undulation);
-  VoidFill::Ground ground{{}, samples.values, HeightsAt(lattice, spacing, level, which + 1).metres};
+  VoidFill::Ground ground{{}, samples.values, HeightsAt(lattice, spacing, node.level(), which + 1).metres};
   for (size_t i = 0; i < samples.weights.size(); ++i) {
     const bool has_datum = !std::isnan(datum_m[i]);
     ground.source_m[i] += has_datum ? datum_m[i] : 0.0;
@@ -183,7 +177,8 @@ std::vector<int32_t> Composite::Heights_mm(Quadcode node) {
 
 double Composite::HeightAt(double latitude_deg, double longitude_deg, std::span<const PlannedSource> plan) {
   const int level = SourceLevel(plan, Quadcode::Containing(latitude_deg, longitude_deg, kMaxLevel));
-  return HeightsAt({{longitude_deg}, {latitude_deg}, {0}}, SpacingOfLevel(level), level).metres[0];
+  const Quadcode node = Quadcode::Containing(latitude_deg, longitude_deg, level);
+  return HeightsAt({{longitude_deg}, {latitude_deg}, {0}}, PostSpacingOf(node), level).metres[0];
 }
 
 Composite::Colours Composite::ColoursAt(const LatticeRows& lattice, const Spacing& spacing, size_t first) {

@@ -53,7 +53,7 @@ class Composite {
   Colours ColoursAt(const LatticeRows& lattice, const Spacing& spacing, size_t first = 0);
   // Of the samplers from `first` on; level: of the lattice.
   Heights HeightsAt(const LatticeRows& lattice, const Spacing& spacing, int level, size_t first = 0);
-  VoidFill::Ground GroundOf(size_t which, const LatticeRows& lattice, int level);
+  VoidFill::Ground GroundOf(size_t which, const LatticeRows& lattice, Quadcode node);
   bool MayCover(const SourceSampler& sampler, const LatticeRows& lattice) const;
 
   const LayerKind kind_;

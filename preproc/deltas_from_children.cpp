@@ -50,10 +50,11 @@ FinestSurface FinestUnder(Quadcode node, const std::array<BoundedPage, 4>& child
       }
     }
     const bool is_finest = child.page->deltas.steps.empty();
-    if (is_finest && node.Children().size() == children.size()) continue;
-    // Of what is finer than its cells. The rows of a wide child are those of its western half's code.
-    const double sagitta_m =
-        is_finest ? 0 : CellSagitta(node.Child(static_cast<int>(IsWide(node, which) ? which & ~size_t{1} : which)));
+    const bool is_half = IsWide(node, which);
+    if (is_finest && !is_half) continue;
+    // Of what is finer than its cells. Halves are of the child in the western one's place.
+    const auto of = static_cast<int>(is_half ? which & ~size_t{1} : which);
+    const double sagitta_m = is_finest ? 0 : CellSagitta(node.Child(of));
     WidenByCells(child, corner, static_cast<int32_t>(std::ceil(sagitta_m / kMetresPerDeviation)), around);
   }
   finest.high_m = finest.low_m;

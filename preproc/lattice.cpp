@@ -68,11 +68,11 @@ std::vector<LatticeRows> PostLattice(Quadcode node) {
 
 LatticeRows PostsAround(Quadcode node, int west, int south, int columns, int rows) {
   const GridPoint corner = node.SouthWest();
+  const int64_t east = node.PostSpacingEast(), north = node.PostSpacingNorth();
   LatticeRows posts;
-  for (int i = west; i < west + columns; ++i)
-    posts.longitudes_deg.push_back(LongitudeOfGrid(corner.x + i * int64_t{node.PostSpacingEast()}));
+  for (int i = west; i < west + columns; ++i) posts.longitudes_deg.push_back(LongitudeOfGrid(corner.x + i * east));
   for (int j = south; j < south + rows; ++j) {
-    const int64_t y = int64_t{corner.y} + j * int64_t{node.PostSpacingNorth()};
+    const int64_t y = int64_t{corner.y} + j * north;
     if (y >= 0 && y <= kPole) Append(posts, LatitudeOfGrid(y), j);
   }
   return posts;

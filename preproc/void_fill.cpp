@@ -60,12 +60,12 @@ GridRange Widened(const DeltaGrid& grid, const GridRange& voids, double reach_m)
 
 std::vector<double> VoidFill::Make(size_t source, Quadcode node, double reach_m) const {
   LatticeRows lattice = PostsAround(node, kTile.west, kTile.south, kPosts, kPosts);
-  DeltaGrid grid = GridOf(ground_of_(source, lattice, node.level()), lattice, node);
+  DeltaGrid grid = GridOf(ground_of_(source, lattice, node), lattice, node);
   const GridRange voids = VoidsOf(grid);
   if (voids.west >= voids.east) return std::move(grid.deltas_m);
   const GridRange wide = Widened(grid, voids, reach_m);
   lattice = PostsAround(node, wide.west, wide.south, wide.east - wide.west, wide.north - wide.south);
-  grid = GridOf(ground_of_(source, lattice, node.level()), lattice, node);
+  grid = GridOf(ground_of_(source, lattice, node), lattice, node);
   const int first_row = -lattice.rows.front(), first_column = -wide.west;  // of the tile within
   FillVoids(grid, {first_column, first_row, first_column + kPosts, first_row + kPosts}, reach_m);
   std::vector<double> deltas_m;

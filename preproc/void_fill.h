@@ -31,8 +31,8 @@ class VoidFill {
     std::vector<DeltaGrid::Post> posts;
     std::vector<double> source_m, below_m;
   };
-  // May ask this very VoidFill for the surfaces of sources below.
-  using GroundOf = std::function<Ground(size_t source, const LatticeRows& lattice, int level)>;
+  // lattice: posts as far apart as those of the quadnode. May ask this very VoidFill for the surfaces of sources below.
+  using GroundOf = std::function<Ground(size_t source, const LatticeRows& lattice, Quadcode node)>;
   explicit VoidFill(GroundOf ground_of) : ground_of_(std::move(ground_of)) {}
 
   double DeltaAt(size_t source, const Georeference& georeference, int level, double longitude_deg, double latitude_deg);

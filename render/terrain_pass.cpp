@@ -5,6 +5,7 @@
 #include "render/view_block.h"
 #include "runtime/base/status.h"
 #include "runtime/earth/ellipsoid.h"
+#include "runtime/earth/post_grid.h"
 
 #include <glm/geometric.hpp>
 
@@ -42,10 +43,7 @@ glm::vec4 RectangleOf(const ImageUse& use) {
 
 // From the quadnode's middle to a corner, radians, and a little more.
 double ReachOf(Quadcode node) {
-  const GeoBox box = node.Box();
-  const double nearest_equator_deg = box.south_deg < 0 ? box.north_deg : box.south_deg;
-  const double width_deg = node.WidthDegrees() * std::cos(nearest_equator_deg * kRadiansPerDegree);
-  return 0.75 * std::max(width_deg, node.HeightDegrees()) * kRadiansPerDegree;
+  return 0.75 * std::max(WidthOnGroundDegrees(node), node.HeightDegrees()) * kRadiansPerDegree;
 }
 
 constexpr uint8_t ModeOf(LayerRole role) {

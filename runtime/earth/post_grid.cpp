@@ -4,6 +4,7 @@
 #include "runtime/earth/ellipsoid.h"
 #include "runtime/earth/units.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace belvedere {
@@ -28,6 +29,7 @@ glm::dvec3 EcefAt(const RowGeometry& row, const ColumnGeometry& column, double h
 PostGrid::PostGrid(Quadcode node, int per_cell) {
   const auto parts = static_cast<uint32_t>(per_cell);
   BELVEDERE_CHECK(per_cell > 0 && parts <= node.PostSpacingNorth());
+  const uint32_t east = node.PostSpacingEast() / parts, north = node.PostSpacingNorth() / parts;
   const int points = kCells * per_cell + 1;
   rows.reserve(static_cast<size_t>(points));
   columns.reserve(static_cast<size_t>(points));
@@ -36,18 +38,21 @@ PostGrid::PostGrid(Quadcode node, int per_cell) {
     rows.push_back(RowAt(point.latitude_deg()));
     const double longitude = point.longitude_deg() * kRadiansPerDegree;
     columns.push_back({std::sin(longitude), std::cos(longitude)});
-    point.x += node.PostSpacingEast() / parts;  // wraps at 180 E, where 180 W has the same bits
-    point.y += node.PostSpacingNorth() / parts;
+    point.x += east;  // wraps at 180 E, where 180 W has the same bits
+    point.y += north;
   }
+}
+
+double WidthOnGroundDegrees(Quadcode node) {
+  const GeoBox box = node.Box();
+  const double nearest_equator_deg = std::min(std::abs(box.south_deg), std::abs(box.north_deg));
+  return node.WidthDegrees() * std::cos(nearest_equator_deg * kRadiansPerDegree);
 }
 
 double CellSagitta(Quadcode node) {
   constexpr double kMetresPerDegree = kEquatorialRadius_m * kRadiansPerDegree;
-  const GeoBox box = node.Box();
-  const double nearest_equator_deg = box.south_deg < 0 ? box.north_deg : box.south_deg;
   const double north_m = node.HeightDegrees() / kCells * kMetresPerDegree;
-  const double east_m =
-      node.WidthDegrees() / kCells * kMetresPerDegree * std::cos(nearest_equator_deg * kRadiansPerDegree);
+  const double east_m = WidthOnGroundDegrees(node) / kCells * kMetresPerDegree;
   return (north_m * north_m + east_m * east_m) / (8.0 * kPolarRadius_m);
 }
 

@@ -47,6 +47,9 @@ struct PostGrid {
   }
 };
 
+// Width of the quadnode along its longer parallel, in degrees of the equator: comparable with HeightDegrees().
+double WidthOnGroundDegrees(Quadcode node);
+
 // How far the ellipsoid rises over a straight line across one cell of the quadnode, at most.
 double CellSagitta(Quadcode node);
 

@@ -44,10 +44,15 @@ constexpr uint64_t Gather(uint64_t v) {
 int DoublingsIn(int level, int64_t row) {
   const int64_t rows = int64_t{kTreeRows} << level;
   const auto from_pole = static_cast<uint64_t>(std::min(row, rows - 1 - row));
-  const auto levels_since_pole =
-      static_cast<int>(std::bit_width(from_pole));  // the quadnode so many levels up touches the pole
+  // The quadnode so many levels up touches the pole.
+  const auto levels_since_pole = static_cast<int>(std::bit_width(from_pole));
   if (levels_since_pole >= level) return 0;
   return levels_since_pole == 0 ? level : level - levels_since_pole + 1;
+}
+
+// In grid units.
+int64_t WidthIn(int level, int64_t row) {
+  return int64_t{1} << (kGridBitsPerTree - level + DoublingsIn(level, row));
 }
 
 }  // namespace
@@ -145,8 +150,12 @@ bool Quadcode::touches_south_pole() const {
 }
 
 GridPoint Quadcode::SouthWest() const {
-  const int shift = kGridBitsPerTree - level();
-  return {static_cast<uint32_t>(column() << (shift + Doublings())), static_cast<uint32_t>(row() << shift)};
+  const int own = level();
+  const int shift = kGridBitsPerTree - own;
+  const int64_t row = this->row();
+  const auto tree_x = static_cast<uint32_t>(tree() % kTreeColumns) << kGridBitsPerTree;
+  return {tree_x + static_cast<uint32_t>(column_in_tree() << (shift + DoublingsIn(own, row))),
+          static_cast<uint32_t>(row << shift)};
 }
 
 double Quadcode::HeightDegrees() const {
@@ -169,7 +178,7 @@ std::vector<Quadcode> Quadcode::Around() const {
   const int64_t last_row = (int64_t{kTreeRows} << own) - 1;
   std::vector<Quadcode> around;
   for (int64_t row = std::max<int64_t>(this->row() - 1, 0); row <= std::min(this->row() + 1, last_row); ++row) {
-    const int64_t width = (int64_t{1} << 32) / ColumnsAround(own, row);
+    const int64_t width = WidthIn(own, row);
     const int64_t first = west / width - (west % width == 0 ? 1 : 0);
     for (int64_t column = first; column <= east / width; ++column) around.push_back(FromColumnRow(own, column, row));
   }
@@ -184,7 +193,7 @@ std::optional<Quadcode> Quadcode::BesideParallel(bool north) const {
     const int shift = kGridBitsPerTree - level;
     if ((border & ((uint32_t{1} << shift) - 1)) != 0) continue;  // there the border lies within a quadnode
     const int64_t row = int64_t{border >> shift} - (north ? 0 : 1);
-    const int64_t width = (int64_t{1} << 32) / ColumnsAround(level, row);
+    const int64_t width = WidthIn(level, row);
     if (width <= int64_t{GridWidth()}) return FromColumnRow(level, corner.x / width, row);
   }
   return std::nullopt;  // none is so fine: beyond kMaxLevel

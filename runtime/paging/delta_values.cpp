@@ -354,10 +354,7 @@ double RangeOf(std::span<const float> heights_m, const Split& split) {
 
 // From corner to corner of a cell, as seen from the Earth's middle, at most.
 double LargestCellRadians(Quadcode node) {
-  const GeoBox box = node.Box();
-  const double nearest_equator_deg = std::min(std::abs(box.south_deg), std::abs(box.north_deg));
-  const double east_deg = node.WidthDegrees() * std::cos(nearest_equator_deg * kRadiansPerDegree);
-  return std::hypot(node.HeightDegrees(), east_deg) / kCells * kRadiansPerDegree;
+  return std::hypot(node.HeightDegrees(), WidthOnGroundDegrees(node)) / kCells * kRadiansPerDegree;
 }
 
 // Of the posts that split something; the corners get the greatest.

@@ -253,6 +253,22 @@ TEST(Build, SiblingsExistTogetherWhereASourceLies) {
   EXPECT_EQ(dataset->FinestContaining(0, 47.09, 11.21).level(), finest);
 }
 
+// Stripes along meridians, 0.3 degrees apart, under posts of a wide page 0.35 degrees apart and 0.09 along meridians.
+TEST(Build, FiltersAreAsWideAlongParallelsAsPostsAreApart) {
+  const std::string folder = FreshFolder("stripes");
+  Write(folder + "/stripes.tif",
+        {.width = 1200, .height = 300, .affine = Degrees(-10, 81, 0.05), .value = [](int, int column, int) {
+           return column / 3 % 2 == 0 ? 0.0 : 1000.0;
+         }});
+  MustBuild(folder, Layer("elevation", {"path = \"stripes.tif\"\ndatum = \"ellipsoid\""}));
+  const auto dataset = MustOpen(folder);
+  const Quadcode node = Quadcode::Containing(70, 10, 2);
+  ASSERT_EQ(node.WidthDegrees(), 45);
+  const auto page = dataset->ReadElevation(0, node);
+  ASSERT_TRUE(page.ok());
+  for (int column = 8; column < kCells - 8; ++column) EXPECT_NEAR((*page)->at(column, 64) / 1000.0, 500, 250) << column;
+}
+
 TEST(Build, TheSameOnOneWorkerAndOnMany) {
   const std::string one = FreshFolder("one"), many = FreshFolder("many");
   for (const std::string& folder : {one, many}) {
